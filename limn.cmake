@@ -1,0 +1,106 @@
+# The build's own vocabulary: one function a kind of target. No globs, no downloads.
+
+set(LIMN_WARNINGS
+  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast
+  -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Wformat=2 -Wcast-align
+  -Wimplicit-fallthrough)
+
+# Flags every target of limn gets, libraries and tests alike. -ffp-contract=off gives the same bits
+# on every compiler: no fused multiply-add appears where the source has none.
+function(limn_set_flags target)
+  target_compile_options(${target} PRIVATE ${LIMN_WARNINGS} -ffp-contract=off)
+  if(LIMN_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(LIMN_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${LIMN_SANITIZE} -fno-sanitize-recover=all
+                                             -fno-omit-frame-pointer)
+    target_link_options(${target} PRIVATE -fsanitize=${LIMN_SANITIZE})
+  endif()
+  if(LIMN_FUZZ)
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
+endfunction()
+
+# limn_add_library(NAME SOURCES .. HEADERS .. LINK .. LINK_PRIVATE ..)
+#
+# Makes the static library limn_NAME, known to users as limn::NAME. HEADERS are public: each must
+# compile by itself (verified where CMAKE_VERIFY_INTERFACE_HEADER_SETS is on) and is installed under
+# its path from the repository root. LINK holds what the public headers include, LINK_PRIVATE what
+# only the sources include.
+function(limn_add_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;LINK;LINK_PRIVATE" ${ARGN})
+  set(target limn_${name})
+  if(ARG_SOURCES)
+    add_library(${target} STATIC ${ARG_SOURCES})
+    set(scope PUBLIC)
+    limn_set_flags(${target})
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(limn::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
+                                             FILES ${ARG_HEADERS})
+  target_link_libraries(${target} ${scope} ${ARG_LINK})
+  if(ARG_LINK_PRIVATE)
+    target_link_libraries(${target} PRIVATE ${ARG_LINK_PRIVATE})
+  endif()
+  install(TARGETS ${target} EXPORT limnTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limn)
+  set_property(GLOBAL APPEND PROPERTY LIMN_LIBRARIES ${target})
+endfunction()
+
+# limn_add_test(NAME SOURCES .. LINK .. LABEL ..): one GoogleTest binary, one ctest entry a test case.
+# A test that calls GTEST_SKIP prints its reason and counts as skipped.
+function(limn_add_test name)
+  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  limn_set_flags(${name})
+  # A test names enumerators of absent members often; conversions in its literals are no defects.
+  target_compile_options(${name} PRIVATE -Wno-conversion -Wno-sign-conversion
+                                         -Wno-double-promotion)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} limn_test_support GTest::gmock
+                                        GTest::gtest_main)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
+    PROPERTIES LABELS "${ARG_LABEL}" SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
+endfunction()
+
+# limn_add_fuzz_target(NAME SOURCE .. LINK ..)
+#
+# With LIMN_FUZZ a libFuzzer binary; otherwise the same target with a plain main that replays
+# tests/fuzz/corpus/NAME, so that no target can rot.
+function(limn_add_fuzz_target name)
+  cmake_parse_arguments(ARG "" "SOURCE" "LINK" ${ARGN})
+  set(target fuzz_${name})
+  if(LIMN_FUZZ)
+    add_executable(${target} ${ARG_SOURCE})
+    target_link_options(${target} PRIVATE -fsanitize=fuzzer)
+  else()
+    add_executable(${target} ${ARG_SOURCE} ${PROJECT_SOURCE_DIR}/tests/fuzz/replay_main.cpp)
+    add_test(NAME fuzz_${name}
+             COMMAND ${target} ${PROJECT_SOURCE_DIR}/tests/fuzz/corpus/${name})
+    set_tests_properties(fuzz_${name} PROPERTIES LABELS fuzz)
+  endif()
+  limn_set_flags(${target})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${target} PRIVATE ${ARG_LINK})
+  set_property(GLOBAL APPEND PROPERTY LIMN_FUZZ_TARGETS ${name})
+endfunction()
+
+# find_package(limn) and one pkg-config file for all libraries.
+function(limn_install_package)
+  install(EXPORT limnTargets NAMESPACE limn:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/limn)
+  configure_package_config_file(
+    ${PROJECT_SOURCE_DIR}/input/base/limnConfig.cmake.in
+    ${PROJECT_BINARY_DIR}/limnConfig.cmake
+    INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/limn)
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/limnConfigVersion.cmake
+    VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
+  install(FILES ${PROJECT_BINARY_DIR}/limnConfig.cmake ${PROJECT_BINARY_DIR}/limnConfigVersion.cmake
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/limn)
+endfunction()
