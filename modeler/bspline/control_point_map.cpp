@@ -1,0 +1,231 @@
+#include "modeler/bspline/control_point_map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace limn {
+namespace {
+
+constexpr std::size_t kMostBasis = KnotVector::kMaxDegree + 1;
+using Row = std::array<double, kMostBasis>;
+
+/// The polar form (blossom) of the polynomial piece on `span`, as weights of the p + 1 control
+/// points P_{span-p} .. P_{span} that make it:
+///
+///     f(x_1, .., x_p) = sum_k row[k] P_{span-p+k}.    [Ramshaw89]
+///
+/// A control point on other knots is the polar form at them, so this gives refinement rows. The
+/// recursion is the one of the basis functions with a different argument a step.
+Row blossom(const KnotVector& knots, int span, std::span<const double> arguments) {
+  const int p = knots.degree();
+  const double* knot = knots.values().data() + span;
+  Row row{};
+  row[0] = 1;
+  for (int j = 1; j <= p; ++j) {
+    const double x = arguments[static_cast<std::size_t>(j - 1)];
+    double saved = 0;
+    for (int r = 0; r < j; ++r) {
+      const auto sr = static_cast<std::size_t>(r);
+      const double low = knot[r + 1 - j];
+      const double high = knot[r + 1];
+      const double share = row[sr] / (high - low);
+      row[sr] = saved + (high - x) * share;
+      saved = (x - low) * share;
+    }
+    row[static_cast<std::size_t>(j)] = saved;
+  }
+  return row;
+}
+
+/// The span of `knots` that holds the middle of a new function's support [low, high] as far as it
+/// lies in the domain. Any span under the support gives the same control point; the middle one
+/// keeps the polar form's arguments near it, and rounding small.
+int middle_span(const KnotVector& knots, double low, double high) {
+  const double a = std::max(low, knots.domain_begin());
+  const double b = std::min(high, knots.domain_end());
+  return knots.find_span(a + 0.5 * (b - a));
+}
+
+/// Rows of a refinement, one a new control point, from `row_of(i)` for each new function i.
+template <class RowOf>
+ControlPointMap make_map(const KnotVector& from, const KnotVector& to, RowOf row_of) {
+  const int width = from.degree() + 1;
+  const int rows = to.basis_count();
+  std::vector<int> first;
+  first.reserve(static_cast<std::size_t>(rows));
+  std::vector<double> coefficients;
+  coefficients.reserve(static_cast<std::size_t>(rows) * static_cast<std::size_t>(width));
+  for (int i = 0; i < rows; ++i) {
+    const auto [span, row] = row_of(i);
+    first.push_back(span - from.degree());
+    coefficients.insert(coefficients.end(), row.begin(), row.begin() + width);
+  }
+  return ControlPointMap(from.basis_count(), width, std::move(first), std::move(coefficients));
+}
+
+/// The knots of one period, [begin, end), the seam's all at the front.
+std::vector<double> knots_of_round(const KnotVector& knots) {
+  const auto& values = knots.values();
+  const auto n = static_cast<std::ptrdiff_t>(knots.basis_count());
+  const double begin = knots.domain_begin();
+  std::vector<double> round(values.begin() + knots.degree(), values.begin() + n);
+  const auto seam =
+      static_cast<std::size_t>(std::count(values.begin(), values.begin() + knots.degree(), begin));
+  // Copies of the seam knot stand before the domain at its begin, inside it at its end.
+  round.resize(round.size() - seam);
+  round.insert(round.begin(), seam, begin);
+  return round;
+}
+
+Expected<KnotVector> with_knots(const KnotVector& knots, std::vector<double> added) {
+  std::sort(added.begin(), added.end());
+  if (knots.is_periodic()) {
+    const auto round = knots_of_round(knots);
+    for (double& u : added) {
+      if (u == knots.domain_end()) u = knots.domain_begin();
+    }
+    std::sort(added.begin(), added.end());
+    std::vector<double> merged(round.size() + added.size());
+    std::merge(round.begin(), round.end(), added.begin(), added.end(), merged.begin());
+    return KnotVector::make_periodic(knots.degree(), merged, knots.domain_end());
+  }
+  std::vector<double> merged(knots.values().size() + added.size());
+  std::merge(knots.values().begin(), knots.values().end(), added.begin(), added.end(),
+             merged.begin());
+  return KnotVector::make(knots.degree(), std::move(merged));
+}
+
+Expected<KnotVector> elevated_knots(const KnotVector& knots) {
+  const int degree = knots.degree() + 1;
+  if (knots.is_periodic()) {
+    auto round = knots_of_round(knots);
+    std::vector<double> distinct = round;
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    std::vector<double> merged(round.size() + distinct.size());
+    std::merge(round.begin(), round.end(), distinct.begin(), distinct.end(), merged.begin());
+    return KnotVector::make_periodic(degree, merged, knots.domain_end());
+  }
+  // Knots outside the domain are raised too, where there is room: what counts is that the domain
+  // keeps index `degree`. Those knots only shape the end functions, so any choice is right.
+  const auto& old = knots.values();
+  const auto p = static_cast<std::ptrdiff_t>(knots.degree());
+  const auto n = static_cast<std::ptrdiff_t>(knots.basis_count());
+  std::vector<double> values(old.begin(), old.begin() + p);
+  for (std::ptrdiff_t i = p; i <= n; ++i) {
+    const double u = old[static_cast<std::size_t>(i)];
+    if (i == p || u != old[static_cast<std::size_t>(i - 1)]) values.push_back(u);
+    values.push_back(u);
+  }
+  values.insert(values.end(), old.begin() + n + 1, old.end());
+  return KnotVector::make(degree, std::move(values));
+}
+
+KnotRefinement elevate_once(const KnotVector& from, const KnotVector& to) {
+  const int p = from.degree();
+  const double* knot = to.values().data();
+  auto map = make_map(from, to, [&](int i) {
+    const int span = middle_span(from, knot[i], knot[i + p + 2]);
+    Row sum{};
+    std::array<double, kMostBasis> arguments;
+    for (int left_out = 1; left_out <= p + 1; ++left_out) {
+      std::size_t count = 0;
+      for (int k = 1; k <= p + 1; ++k) {
+        if (k != left_out) arguments[count++] = knot[i + k];
+      }
+      const Row row = blossom(from, span, {arguments.data(), count});
+      for (std::size_t k = 0; k < row.size(); ++k) sum[k] += row[k] / (p + 1);
+    }
+    return std::pair(span, sum);
+  });
+  return {to, std::move(map)};
+}
+
+ControlPointMap identity(int count) {
+  std::vector<int> first(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) first[static_cast<std::size_t>(i)] = i;
+  return ControlPointMap(count, 1, std::move(first),
+                         std::vector<double>(static_cast<std::size_t>(count), 1.0));
+}
+
+}  // namespace
+
+ControlPointMap::ControlPointMap(int columns, int width, std::vector<int> first,
+                                 std::vector<double> coefficients)
+    : columns_(columns),
+      width_(width),
+      first_(std::move(first)),
+      coefficients_(std::move(coefficients)) {
+  LIMN_EXPECT(coefficients_.size() == first_.size() * static_cast<std::size_t>(width_));
+}
+
+ControlPointMap compose(const ControlPointMap& outer, const ControlPointMap& inner) {
+  LIMN_EXPECT(outer.columns() == inner.rows());
+  int width = 1;
+  std::vector<int> first(static_cast<std::size_t>(outer.rows()));
+  std::vector<int> last(first.size());
+  for (int r = 0; r < outer.rows(); ++r) {
+    int low = inner.columns();
+    int high = 0;
+    for (int k = 0; k < outer.width(); ++k) {
+      low = std::min(low, inner.first(outer.first(r) + k));
+      high = std::max(high, inner.first(outer.first(r) + k) + inner.width());
+    }
+    first[static_cast<std::size_t>(r)] = low;
+    width = std::max(width, high - low);
+  }
+  std::vector<double> coefficients(first.size() * static_cast<std::size_t>(width));
+  for (int r = 0; r < outer.rows(); ++r) {
+    int& low = first[static_cast<std::size_t>(r)];
+    low = std::min(low, inner.columns() - width);
+    double* out = coefficients.data() + static_cast<std::ptrdiff_t>(r) * width;
+    for (int k = 0; k < outer.width(); ++k) {
+      const int middle = outer.first(r) + k;
+      const auto row = inner.row(middle);
+      for (std::size_t j = 0; j < row.size(); ++j) {
+        out[static_cast<std::size_t>(inner.first(middle) - low) + j] +=
+            outer.row(r)[static_cast<std::size_t>(k)] * row[j];
+      }
+    }
+  }
+  return ControlPointMap(inner.columns(), width, std::move(first), std::move(coefficients));
+}
+
+Expected<KnotRefinement> insert_knots(const KnotVector& knots, std::span<const double> added) {
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    if (!(added[i] >= knots.domain_begin() && added[i] <= knots.domain_end())) {
+      return fail(ErrorCode::kOutOfRange, "added knot " + std::to_string(i),
+                  "the value lies outside the domain", "insert knots inside the domain only");
+    }
+  }
+  auto to = with_knots(knots, {added.begin(), added.end()});
+  if (!to) return tl::unexpected(std::move(to.error()));
+  const int p = knots.degree();
+  const double* knot = to->values().data();
+  auto map = make_map(knots, *to, [&](int i) {
+    const int span = middle_span(knots, knot[i], knot[i + p + 1]);
+    return std::pair(span, blossom(knots, span, {knot + i + 1, static_cast<std::size_t>(p)}));
+  });
+  return KnotRefinement{*std::move(to), std::move(map)};
+}
+
+Expected<KnotRefinement> elevate_degree(const KnotVector& knots, int by) {
+  if (by < 0 || by > KnotVector::kMaxDegree - knots.degree()) {
+    return fail(ErrorCode::kOutOfRange, "degree",
+                "raising " + std::to_string(knots.degree()) + " by " + std::to_string(by) +
+                    " leaves 0 to " + std::to_string(KnotVector::kMaxDegree),
+                "raise the degree less");
+  }
+  KnotRefinement out{knots, identity(knots.basis_count())};
+  for (int step = 0; step < by; ++step) {
+    auto to = elevated_knots(out.knots);
+    if (!to) return tl::unexpected(std::move(to.error()));
+    KnotRefinement once = elevate_once(out.knots, *to);
+    out = {std::move(once.knots), compose(once.map, out.map)};
+  }
+  return out;
+}
+
+}  // namespace limn

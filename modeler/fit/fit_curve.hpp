@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "input/base/error.hpp"
+#include "modeler/bspline/tensor_spline.hpp"
+
+namespace limn {
+
+/// How fit_curve() works.
+struct FitOptions {
+  /// Greatest allowed distance of any sample from the curve, in the samples' unit. More than 0.
+  double tolerance_mm = 0.1;
+  /// Whether to look for corners; without, the curve is C2 everywhere it can be.
+  bool detect_corners = true;
+  /// Turning of the path, between 0 and pi, from which a sharp bend is a corner.
+  double corner_angle_rad = 0.7;
+  /// Whether a stroke whose end meets its beginning becomes a periodic curve.
+  bool allow_closing = true;
+};
+
+/// A curve through samples, and what it achieved. The deviations are those of `curve` as returned.
+template <int kDimension>
+struct CurveFit {
+  /// Cubic, C2 but for `corners` (and places named there); a dot is degree 0 with one control
+  /// point. Periodic exactly if `closed`.
+  BsplineCurve<kDimension> curve;
+  /// For each sample the parameter it belongs to: non-decreasing, within the domain.
+  std::vector<double> sample_parameters;
+  /// Distances |curve(sample_parameters[i]) - sample i|: the largest, and the root of their mean
+  /// square, every sample counted once (duplicates too).
+  double deviation_max = 0;
+  double deviation_rms = 0;
+  /// Largest distance of the curve, probed several times a span of samples, from the polyline of
+  /// the samples, order kept: each piece against the leg it belongs to and its neighbours.
+  double polyline_deviation_max = 0;
+  /// Parameters where the curve is only C0, ascending.
+  std::vector<double> corners;
+  bool closed = false;
+};
+
+/// Fits a cubic B-spline curve within options.tolerance_mm of every sample, with few control
+/// points.
+///
+/// `positions` in mm, at least one; `times` in seconds, non-decreasing, one a sample, or empty:
+/// chord length then stands in for time.
+///
+/// Errors: kMissing without samples; kPointCount where `times` do not match; kOutOfRange for a
+/// tolerance that is not positive and finite, a corner angle out of range, or a sample that is not
+/// finite or whose time decreases (the error names it); kNumeric where double precision cannot
+/// resolve the tolerance at these coordinates.
+/// Instantiated for dimensions 1 to 10.
+template <int kDimension>
+Expected<CurveFit<kDimension>> fit_curve(
+    std::span<const Eigen::Matrix<double, kDimension, 1>> positions, std::span<const double> times,
+    const FitOptions& options);
+
+}  // namespace limn
