@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "drivers/hid/descriptor_parser.hpp"
+
+namespace limn::hid {
+
+/// Reads one element of a report: a precompiled bit offset, size and sign. A regular value; the
+/// default one is absent and reads nothing. Bits are numbered as in HID: bit 0 is the lowest of the
+/// first byte, the report ID byte included.
+///
+/// Reading never allocates and checks the report's length for this element alone, so a short report
+/// still gives its first elements, and a long one (several layouts in one packet) is no error.
+class FieldReader {
+ public:
+  constexpr FieldReader() = default;
+
+  /// For element `element` of `field`. Absent where element >= field.count, or the element is wider
+  /// than 64 bits. In an array field this reads the index as sent.
+  static FieldReader of_element(const Field& field, std::uint32_t element) noexcept;
+
+  /// For one control of an array field: reads 1 while any element equals `value`, else 0.
+  static FieldReader of_selection(const Field& field, std::int64_t value) noexcept;
+
+  /// For `bit_size` (1 to 64) bits anywhere, without a logical range.
+  static FieldReader of_bits(std::uint32_t bit_offset, std::uint32_t bit_size,
+                             bool is_signed) noexcept;
+
+  constexpr bool present() const noexcept { return access_ != Access::kAbsent; }
+  constexpr explicit operator bool() const noexcept { return present(); }
+
+  /// The value with its sign. Absent where this reader is absent, the report ends before the
+  /// element does, or the field has a Null State and the value lies outside its logical range (the
+  /// device has nothing to say; without Null State values are given as sent, never clamped).
+  /// An unsigned 64-bit element above 2^63-1 comes out negative: use read_bits for serial numbers.
+  std::optional<std::int64_t> read(std::span<const std::uint8_t> report) const noexcept;
+
+  /// The same without sign extension: for serial numbers and identifiers of up to 64 bits.
+  std::optional<std::uint64_t> read_bits(std::span<const std::uint8_t> report) const noexcept;
+
+  /// For switches: whether the value is there and not zero.
+  bool is_set(std::span<const std::uint8_t> report) const noexcept {
+    return read(report).value_or(0) != 0;
+  }
+
+  /// The declared logical range; 0..0 for an absent reader. minimum > maximum means: none.
+  constexpr Range logical() const noexcept { return logical_; }
+  constexpr std::uint32_t bit_offset() const noexcept { return bit_offset_; }
+  constexpr std::uint32_t bit_size() const noexcept { return bit_size_; }
+
+ private:
+  enum class Access : std::uint8_t { kAbsent, kU8, kS8, kU16, kS16, kBit, kBits, kSelection };
+
+  Range logical_;
+  std::int64_t selected_ = 0;  // kSelection: the index looked for
+  std::uint32_t bit_offset_ = 0;
+  std::uint32_t end_byte_ = 0;  // bytes that a report needs for this element
+  std::uint32_t count_ = 0;     // kSelection: elements to look at
+  std::uint8_t bit_size_ = 0;
+  Access access_ = Access::kAbsent;
+  bool is_signed_ = false;
+  bool null_state_ = false;
+
+  void choose_access() noexcept;
+  std::optional<std::uint64_t> read_selection(std::span<const std::uint8_t> report) const noexcept;
+};
+
+}  // namespace limn::hid

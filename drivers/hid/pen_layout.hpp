@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "drivers/hid/descriptor_parser.hpp"
+#include "drivers/hid/field_reader.hpp"
+#include "drivers/hid/units.hpp"
+
+namespace limn::hid {
+
+/// Who writes in a digitizer collection.
+enum class Transducer : std::uint8_t { kStylus, kFinger };
+
+/// A measured axis: its reader (may be absent) and the way from its counts to limn's unit.
+struct AxisReader {
+  FieldReader reader;
+  LinearMap map;
+  /// Whether `map` rests on a unit that the descriptor declares. Without it: positions stay in
+  /// counts from the Logical Minimum (the size must come from elsewhere), angles are taken as
+  /// degrees, tenths or hundredths (angle_map).
+  bool has_unit = false;
+
+  explicit operator bool() const noexcept { return reader.present(); }
+};
+
+/// Where one input report carries one transducer. Absent members have absent readers, which read
+/// nothing, so a decoder needs no cases. Plain data after compilation: reading allocates nothing.
+///
+/// Vendor pages count as the standard usages that they repeat (standard_usage); Wacom's usages
+/// without a twin have members of their own.
+struct PenLayout {
+  Transducer transducer = Transducer::kStylus;
+  std::uint8_t report_id = 0;
+  bool numbered = false;
+  std::uint32_t byte_length = 0;               ///< of the declared report, ID byte included
+  CollectionIndex collection = kNoCollection;  ///< the stylus, pen or finger collection
+  Usage application;                           ///< usage of the top-level collection around it
+  std::uint8_t slot = 0;  ///< number of this transducer within its report, from 0
+
+  AxisReader x;                ///< mm, 0 at the Logical Minimum; counts without has_unit
+  AxisReader y;                ///< mm, like x
+  AxisReader pressure;         ///< 0 to 1 over the logical range (Tip Pressure)
+  AxisReader barrel_pressure;  ///< 0 to 1
+  AxisReader tilt_x;           ///< rad
+  AxisReader tilt_y;           ///< rad
+  AxisReader azimuth;          ///< rad
+  AxisReader altitude;         ///< rad
+  AxisReader twist;            ///< rad, as declared (Wacom: -180 to 180 degrees)
+  AxisReader distance;         ///< 0 to 1 (Wacom's Distance, or Z); direction as the device has it
+  AxisReader scan_time;        ///< s
+  AxisReader wheel;            ///< 0 to 1 (Wacom's airbrush finger wheel)
+
+  FieldReader tip_switch;
+  FieldReader in_range;
+  FieldReader barrel_switch;
+  FieldReader secondary_barrel_switch;
+  FieldReader barrel_switch3;  ///< Wacom
+  FieldReader eraser;
+  FieldReader invert;
+  FieldReader sense;       ///< Wacom: in the wider proximity in which the tool id is known
+  FieldReader data_valid;  ///< 0 means: ignore the coordinates
+  FieldReader confidence;
+  FieldReader quality;
+  FieldReader transducer_index;
+  FieldReader contact_identifier;
+  FieldReader contact_count;
+  FieldReader battery;      ///< percent where its logical maximum is 100
+  FieldReader serial;       ///< up to 64 bits: read_bits
+  FieldReader serial_high;  ///< the upper 32 bits where `serial` has the lower 32
+  FieldReader tool_type;    ///< Wacom
+  FieldReader sequence;     ///< Wacom: counts reports, wraps at its size
+
+  /// Whether `report` is this layout's: by its first byte where reports are numbered, else always.
+  bool matches(std::span<const std::uint8_t> report) const noexcept {
+    return !numbered || (!report.empty() && report[0] == report_id);
+  }
+};
+
+/// Every transducer with absolute X and Y and a tip switch, tip pressure or in-range bit in an
+/// input report: pens, and the fingers of touch screens and pads. By report, then place. A finger
+/// is what lies in a Finger collection, or in a touch screen or touch pad without a Stylus one.
+std::vector<PenLayout> transducer_layouts(const ReportDescriptor& descriptor);
+
+/// The pens among them: what limn decodes to pen samples. Preferred ones first: a report that
+/// repeats another's pen on a vendor page comes after it.
+std::vector<PenLayout> pen_layouts(const ReportDescriptor& descriptor);
+
+}  // namespace limn::hid
