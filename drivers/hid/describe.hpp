@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,8 +13,8 @@
 
 namespace limn::hid {
 
-/// One line of a described report: neighbouring elements of a field with one usage or with
-/// consecutive usages of one page.
+/// One line of a described report: neighbouring elements of a variable field with one usage or one
+/// declared range of usages, or a whole array field, or padding.
 struct FieldRow {
   ReportKind kind = ReportKind::kInput;
   std::uint8_t report_id = 0;
@@ -22,15 +23,15 @@ struct FieldRow {
   std::uint32_t count = 0;       ///< elements
   std::string collections;       ///< from the outermost, e.g. "Pen > Stylus"
   std::string usage;             ///< e.g. "Tip Pressure", "Button 1 .. Button 8", "padding"
-  std::string flags;             ///< e.g. "variable, absolute, null state"
+  std::string flags;  ///< what differs from a plain absolute value, e.g. "relative, null state"
   bool array = false;
   bool padding = false;  ///< constant, or without a usage
   Range logical;
   Range physical;    ///< in `unit`, exponent not applied; the logical range where 0..0
-  std::string unit;  ///< "cm", "deg", ..; empty where none is declared
+  std::string unit;  ///< as declared: "cm", "inch", "deg" ..; empty where none is
   std::int8_t unit_exponent = 0;
   Quantity quantity = Quantity::kNone;
-  std::optional<double> minimum;  ///< physical range in mm, degrees, s or N
+  std::optional<double> minimum;  ///< physical range in mm, degrees, s or N (unit_of)
   std::optional<double> maximum;
   std::optional<double> counts_per_mm;  ///< lengths only; times 25.4: lines per inch
   std::uint32_t offset = 0;             ///< of the Main item in the descriptor, bytes
@@ -44,21 +45,31 @@ struct CollectionRow {
   std::uint32_t offset = 0;  ///< bytes
 };
 
+/// A transducer as limn will read it: its layout and the axes and switches that are there.
+struct TransducerRow {
+  PenLayout layout;
+  std::string name;         ///< "pen", "tablet mouse", "finger"
+  std::string collections;  ///< e.g. "Pen > Stylus"
+  std::string axes;         ///< "x, y, pressure, tilt x, tilt y"
+  std::string switches;     ///< "tip, in range, barrel"
+};
+
 /// A report descriptor explained.
 struct Description {
   std::uint32_t byte_length = 0;
   std::vector<CollectionRow> collections;
   std::vector<ReportShape> reports;
-  std::vector<FieldRow> rows;          ///< by report (kind, ID), then offset
-  std::vector<PenLayout> transducers;  ///< see transducer_layouts
+  std::vector<FieldRow> rows;  ///< by report (kind, ID), then offset; kMaxDescriptionRows at most
+  std::vector<TransducerRow> transducers;  ///< see transducer_layouts
   std::vector<DescriptorNote> notes;
+  bool complete = true;  ///< false where kMaxDescriptionRows left rows out
 };
 
-/// Explains `descriptor`. Its size is bounded by kMaxDescriptionRows.
-Description describe(const ReportDescriptor& descriptor);
+/// Bounds the size of any Description; real ones have up to 800 rows.
+inline constexpr std::size_t kMaxDescriptionRows = 10000;
 
-/// Rows of a Description at most; what does not fit becomes a note.
-inline constexpr std::size_t kMaxDescriptionRows = 20000;
+/// Explains `descriptor`.
+Description describe(const ReportDescriptor& descriptor);
 
 /// The description as aligned text for a person, lines ended by '\n'.
 std::string to_text(const Description& description);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -22,7 +24,8 @@ class FieldReader {
   /// than 64 bits. In an array field this reads the index as sent.
   static FieldReader of_element(const Field& field, std::uint32_t element) noexcept;
 
-  /// For one control of an array field: reads 1 while any element equals `value`, else 0.
+  /// For one control of an array field: reads 1 while any element equals `value`, else 0. Absent
+  /// where elements are wider than 64 bits.
   static FieldReader of_selection(const Field& field, std::int64_t value) noexcept;
 
   /// For `bit_size` (1 to 64) bits anywhere, without a logical range.
@@ -36,9 +39,38 @@ class FieldReader {
   /// element does, or the field has a Null State and the value lies outside its logical range (the
   /// device has nothing to say; without Null State values are given as sent, never clamped).
   /// An unsigned 64-bit element above 2^63-1 comes out negative: use read_bits for serial numbers.
-  std::optional<std::int64_t> read(std::span<const std::uint8_t> report) const noexcept;
+  std::optional<std::int64_t> read(std::span<const std::uint8_t> report) const noexcept {
+    if (report.size() < end_byte_) return std::nullopt;
+    const std::uint8_t* const at = report.data() + first_byte_;
+    std::int64_t value = 0;
+    switch (access_) {
+      case Access::kBit:
+        value = (*at >> shift_) & 1;
+        break;
+      case Access::kU8:
+        value = *at;
+        break;
+      case Access::kS8:
+        value = static_cast<std::int8_t>(*at);
+        break;
+      case Access::kU16:
+        value = at[0] | at[1] << 8;
+        break;
+      case Access::kS16:
+        value = static_cast<std::int16_t>(at[0] | at[1] << 8);
+        break;
+      case Access::kAbsent:
+      case Access::kBits:
+      case Access::kSelection:
+        return read_slowly(report);
+    }
+    if (null_state_ && !logical_.contains(value)) return std::nullopt;
+    return value;
+  }
 
-  /// The same without sign extension: for serial numbers and identifiers of up to 64 bits.
+  /// The bits as sent, for serial numbers and identifiers of up to 64 bits: no sign, and no Null
+  /// State, because real descriptors leave another field's logical range on them. Absent where this
+  /// reader is absent or the report ends before the element does.
   std::optional<std::uint64_t> read_bits(std::span<const std::uint8_t> report) const noexcept;
 
   /// For switches: whether the value is there and not zero.
@@ -48,24 +80,28 @@ class FieldReader {
 
   /// The declared logical range; 0..0 for an absent reader. minimum > maximum means: none.
   constexpr Range logical() const noexcept { return logical_; }
-  constexpr std::uint32_t bit_offset() const noexcept { return bit_offset_; }
+  constexpr std::uint32_t bit_offset() const noexcept { return first_byte_ * 8 + shift_; }
   constexpr std::uint32_t bit_size() const noexcept { return bit_size_; }
 
  private:
-  enum class Access : std::uint8_t { kAbsent, kU8, kS8, kU16, kS16, kBit, kBits, kSelection };
+  enum class Access : std::uint8_t { kAbsent, kBit, kU8, kS8, kU16, kS16, kBits, kSelection };
+
+  static Access choose_access(std::uint32_t shift, std::uint32_t bit_size, bool is_signed) noexcept;
+  std::optional<std::int64_t> read_slowly(std::span<const std::uint8_t> report) const noexcept;
+  std::int64_t with_sign(std::uint64_t bits) const noexcept;
+  std::optional<std::int64_t> read_selection(std::span<const std::uint8_t> report) const noexcept;
 
   Range logical_;
   std::int64_t selected_ = 0;  // kSelection: the index looked for
-  std::uint32_t bit_offset_ = 0;
-  std::uint32_t end_byte_ = 0;  // bytes that a report needs for this element
-  std::uint32_t count_ = 0;     // kSelection: elements to look at
+  // No report is as long as an absent reader asks for.
+  std::size_t end_byte_ = std::numeric_limits<std::size_t>::max();
+  std::uint32_t first_byte_ = 0;
+  std::uint32_t count_ = 0;  // kSelection: elements to look at
+  std::uint8_t shift_ = 0;   // of the lowest bit within first_byte_
   std::uint8_t bit_size_ = 0;
   Access access_ = Access::kAbsent;
   bool is_signed_ = false;
   bool null_state_ = false;
-
-  void choose_access() noexcept;
-  std::optional<std::uint64_t> read_selection(std::span<const std::uint8_t> report) const noexcept;
 };
 
 }  // namespace limn::hid

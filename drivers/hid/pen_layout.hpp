@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,7 +13,11 @@
 namespace limn::hid {
 
 /// Who writes in a digitizer collection.
-enum class Transducer : std::uint8_t { kStylus, kFinger };
+enum class Transducer : std::uint8_t {
+  kStylus,
+  kPuck,  ///< a tablet mouse: in range and buttons, no pressure
+  kFinger,
+};
 
 /// A measured axis: its reader (may be absent) and the way from its counts to limn's unit.
 struct AxisReader {
@@ -48,7 +54,7 @@ struct PenLayout {
   AxisReader azimuth;          ///< rad
   AxisReader altitude;         ///< rad
   AxisReader twist;            ///< rad, as declared (Wacom: -180 to 180 degrees)
-  AxisReader distance;         ///< 0 to 1 (Wacom's Distance, or Z); direction as the device has it
+  AxisReader distance;         ///< 0 (touching) to 1 (Wacom's Distance, or Z, which falls with it)
   AxisReader scan_time;        ///< s
   AxisReader wheel;            ///< 0 to 1 (Wacom's airbrush finger wheel)
 
@@ -71,6 +77,10 @@ struct PenLayout {
   FieldReader serial_high;  ///< the upper 32 bits where `serial` has the lower 32
   FieldReader tool_type;    ///< Wacom
   FieldReader sequence;     ///< Wacom: counts reports, wraps at its size
+  /// Buttons 1 to 5: of a puck left, right, middle ..; absent in most stylus collections. Where a
+  /// pen declares no Tip Switch but Button 1 (pens in a mouse's collection), tip_switch and the
+  /// barrel switches read Buttons 1 to 3.
+  std::array<FieldReader, 5> buttons;
 
   /// Whether `report` is this layout's: by its first byte where reports are numbered, else always.
   bool matches(std::span<const std::uint8_t> report) const noexcept {
@@ -78,13 +88,22 @@ struct PenLayout {
   }
 };
 
-/// Every transducer with absolute X and Y and a tip switch, tip pressure or in-range bit in an
-/// input report: pens, and the fingers of touch screens and pads. By report, then place. A finger
-/// is what lies in a Finger collection, or in a touch screen or touch pad without a Stylus one.
+/// Every transducer with absolute X and Y in an input report, by report, then place: pens, tablet
+/// mice, and the fingers of touch screens and pads.
+///
+/// One collection that the tables call Stylus, Pen, Puck or Finger is one transducer (a Stylus in a
+/// touch screen with nothing but a contact is a finger, too); where a
+/// top-level collection holds none of these, it is one itself: of fingers if it is a touch screen
+/// or touch pad, else a pen if it has a tip pressure (real pens pose as mice or on vendor pages) or
+/// is a digitizer with a tip switch or in-range bit. Usages directly in the top-level collection
+/// (scan time, contact count) belong to each transducer of their report. At most kMaxTransducers.
 std::vector<PenLayout> transducer_layouts(const ReportDescriptor& descriptor);
 
-/// The pens among them: what limn decodes to pen samples. Preferred ones first: a report that
-/// repeats another's pen on a vendor page comes after it.
+/// The pens and tablet mice among them: what limn decodes to pen samples. Those on standard pages
+/// come before those on vendor pages, these before those that pose as mice.
 std::vector<PenLayout> pen_layouts(const ReportDescriptor& descriptor);
+
+/// Real descriptors have up to 20 (fingers in two reports).
+inline constexpr std::size_t kMaxTransducers = 256;
 
 }  // namespace limn::hid

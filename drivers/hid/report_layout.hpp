@@ -24,6 +24,10 @@ struct LocatedElement {
 std::vector<LocatedElement> locate(const ReportDescriptor& descriptor, std::uint8_t report_id,
                                    CollectionIndex collection, Usage wanted);
 
+/// The same within one input field: fields[field_index].
+std::vector<LocatedElement> locate_in_field(const ReportDescriptor& descriptor,
+                                            std::uint32_t field_index, Usage wanted);
+
 /// The compiled plan for one input report: a flat array of readers, one for each wanted usage.
 class ReportLayout {
  public:

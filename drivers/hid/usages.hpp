@@ -28,8 +28,9 @@ inline constexpr std::uint16_t kDigitizer = 0x0D;
 /// Wacom's own page. The upper byte of a usage id names the standard page whose usage it repeats:
 /// 0x0130 is Generic Desktop X, 0x0042 (upper byte 0) the digitizer page's Tip Switch.
 inline constexpr std::uint16_t kWacom = 0xFF0D;
-/// Wacom's second copy of the digitizer page, with its usage ids (Tip Switch 0x42 ..), in the
-/// raw twin that its built-in pens declare beside the standard report.
+/// Wacom's copies of the digitizer page, with its usage ids (Tip Switch 0x42 ..), in the raw twin
+/// that its built-in pens declare beside the standard report. 0x11 is their touch screen.
+inline constexpr std::uint16_t kWacomG9 = 0xFF09;
 inline constexpr std::uint16_t kWacomG11 = 0xFF11;
 }  // namespace page
 
@@ -46,6 +47,7 @@ inline constexpr Usage kDigitizer{page::kDigitizer, 0x01};
 inline constexpr Usage kPen{page::kDigitizer, 0x02};
 inline constexpr Usage kTouchScreen{page::kDigitizer, 0x04};
 inline constexpr Usage kTouchPad{page::kDigitizer, 0x05};
+inline constexpr Usage kMultiplePointDigitizer{page::kDigitizer, 0x0C};
 inline constexpr Usage kStylus{page::kDigitizer, 0x20};
 inline constexpr Usage kPuck{page::kDigitizer, 0x21};
 inline constexpr Usage kFinger{page::kDigitizer, 0x22};
@@ -67,7 +69,7 @@ inline constexpr Usage kTipSwitch{page::kDigitizer, 0x42};
 inline constexpr Usage kBarrelSwitch{page::kDigitizer, 0x44};
 inline constexpr Usage kEraser{page::kDigitizer, 0x45};
 inline constexpr Usage kTabletPick{page::kDigitizer, 0x46};
-inline constexpr Usage kConfidence{page::kDigitizer, 0x47};
+inline constexpr Usage kConfidence{page::kDigitizer, 0x47};  ///< "Touch Valid" in newer tables
 inline constexpr Usage kContactIdentifier{page::kDigitizer, 0x51};
 inline constexpr Usage kContactCount{page::kDigitizer, 0x54};
 inline constexpr Usage kScanTime{page::kDigitizer, 0x56};
@@ -85,11 +87,13 @@ inline constexpr Usage kWacomSequenceNumber{page::kWacom, 0x220};
 inline constexpr Usage kWacomFingerWheel{page::kWacom, 0xD03};
 }  // namespace usage
 
-/// The standard usage that `usage` repeats on a vendor page (see page::kWacom, page::kWacomG11);
+/// The standard usage that `usage` repeats on a vendor page (see page::kWacom, page::kWacomG9);
 /// `usage` itself where it repeats none: standard pages, unknown vendors, and Wacom usages without
 /// a twin (kWacomSense, kWacomSerialHigh, kWacomToolType, kWacomDistance ..).
 constexpr Usage standard_usage(Usage usage) noexcept {
-  if (usage.page == page::kWacomG11) return {page::kDigitizer, usage.id};
+  if (usage.page == page::kWacomG9 || usage.page == page::kWacomG11) {
+    return usage.id == 0x11 ? usage::kTouchScreen : Usage{page::kDigitizer, usage.id};
+  }
   if (usage.page != page::kWacom) return usage;
   switch (usage.id) {
     case usage::kWacomSense.id:
