@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -8,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "input/base/byte_stream.hpp"
 #include "input/base/error.hpp"
 #include "input/base/time.hpp"
 #include "input/sample/pen_sample.hpp"
@@ -15,11 +17,32 @@
 
 namespace limn {
 
-/// The recorded formats that limn tells apart by content.
+/// The recorded formats that limn tells apart by content. Line ends are LF or CR LF everywhere.
+///
+/// kHidRecorder  `#` comment, `#limn` note; `D:` selects a device (0 before the first); `R:`, `N:`,
+///               `P:`, `I:` describe it; `E: sec.usec length bytes` is a report. Other prefixes and
+///               prose (the recorder's prompts) are passed over.
+/// kUsbhidDump   `[BUS:DEVICE:]INTERFACE:STREAM  sec.usec` (or DESCRIPTOR), then lines of up to 16
+///               bytes, ended by a blank line, the next header or the end. DeviceIndex is the
+///               interface number, plus 256 times the ordinal of the bus and device address.
+/// kEvemu        1.0 to 1.3, the version line optional; `N:`, `I:`, `P:`, `B:`, `A:` and `E:`.
+/// kStrokeCsv    `t,x,y,p[,alt,az]`: seconds, mm, mm, 0..1, degrees, degrees; the header line is
+///               optional, `#` lines and blank lines are passed over. Every row is a PenSample of
+///               an ordinary pen in contact. alt and az become tilt, see input/sample/tilt.hpp; an
+///               alt outside 0..90 is clamped. Such a file describes no device.
 enum class TraceFormat { kHidRecorder, kUsbhidDump, kEvemu, kStrokeCsv };
 
 /// "hid-recorder", "usbhid-dump", "evemu", "stroke CSV".
 std::string_view name(TraceFormat format) noexcept;
+
+/// What a recording may hold at most; beyond, a kLimit error. With these a reader's memory is
+/// bounded: about 1 MB, plus the descriptors, together at most 16 MB.
+inline constexpr std::size_t kMaxLineBytes = std::size_t{256} * 1024;
+inline constexpr std::size_t kMaxDescriptorBytes = 65535;  // wDescriptorLength has 16 bits
+inline constexpr std::size_t kMaxReportBytes = 16384;      // Linux's HID_MAX_BUFFER_SIZE
+inline constexpr std::size_t kMaxDeviceTextBytes = 1024;   // a name, a physical path
+inline constexpr std::size_t kMaxFrameEvents = 4096;
+inline constexpr std::size_t kMaxTraceDevices = 256;
 
 /// Range of one kernel-decoded absolute axis (evemu's A: line). Resolution in units per mm (per
 /// radian for tilt); 0 where the kernel did not know it.
@@ -49,30 +72,33 @@ struct TraceDevice {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
   std::uint16_t version = 0;
-  std::vector<std::uint8_t> report_descriptor;
-  std::vector<EvdevAxis> axes;  ///< evemu only
+  std::vector<std::uint8_t> report_descriptor;  ///< empty: not known
+  std::vector<EvdevAxis> axes;                  ///< evemu only, in file order
 };
 
 /// The trace describes a device: sent before its first report or frame, and again when the trace
-/// describes it anew (a replug). `device` is borrowed until the reader's next call.
+/// describes it anew (a replug). A device that is described but never reports is sent too, at the
+/// end of its description. `device` is borrowed until the reader's next call.
 struct DeviceDescribed {
   const TraceDevice* device = nullptr;
 };
 
-/// Kernel events up to, without, a SYN_REPORT. Borrowed until the reader's next call.
+/// Kernel events up to, without, a SYN_REPORT, whose time it has; no events where SYN_REPORTs
+/// follow each other. Borrowed until the reader's next call.
 struct EvdevFrame {
   DeviceIndex device = 0;
   Timestamp time{};
   std::span<const EvdevEvent> events;
 };
 
-/// A "#limn" comment line of a hid-recorder file, without that prefix: an event beside the reports
-/// (loss, hot-plug). Borrowed until the reader's next call.
+/// A "#limn" comment line of a hid-recorder file, without that prefix and the blank after it: an
+/// event beside the reports (loss, hot-plug). Borrowed until the reader's next call.
 struct TraceNote {
   std::string_view text;
 };
 
-/// A part of the file that TraceOptions::salvage skipped.
+/// A part of the file that TraceOptions::salvage skipped: everything damaged between the event
+/// before and the event after. `error` is that of the first damage and says how many lines went.
 struct TraceDamage {
   Error error;
 };
@@ -82,8 +108,10 @@ struct TraceEnd {};
 using TraceEvent =
     std::variant<TraceEnd, DeviceDescribed, Report, EvdevFrame, PenSample, TraceNote, TraceDamage>;
 
-/// Streams the events of one recording in file order, with the file's own times, in constant memory
-/// (apart from device descriptions). Not thread-safe.
+/// Streams the events of one recording in file order, in constant memory. Times are the file's own,
+/// to the nanosecond, and never decrease within one device: a line whose time does is damage. (A
+/// recorder may count each device from its own start, so times of two devices may interleave
+/// backwards.) Not thread-safe.
 class TraceReader {
  public:
   virtual ~TraceReader() = default;
@@ -97,20 +125,6 @@ class TraceReader {
   virtual std::string place() const = 0;
 };
 
-/// Where bytes come from: a file, standard input, or memory in tests and fuzzers.
-class ByteSource {
- public:
-  virtual ~ByteSource() = default;
-  /// Fills up to out.size() bytes; 0 means the end. Error: kIo.
-  virtual Expected<std::size_t> read(std::span<char> out) = 0;
-};
-
-/// Opens `path` for reading; "-" is standard input. Error: kIo.
-Expected<std::unique_ptr<ByteSource>> open_bytes(const std::string& path);
-
-/// Reads from `text`, which must outlive the source.
-std::unique_ptr<ByteSource> memory_bytes(std::string_view text);
-
 /// A descriptor and ids from outside, for formats that carry none (usbhid-dump streams).
 struct SuppliedDevice {
   std::vector<std::uint8_t> report_descriptor;
@@ -119,14 +133,17 @@ struct SuppliedDevice {
 };
 
 struct TraceOptions {
-  /// Skip what is damaged (as TraceDamage events) instead of stopping at it with an error.
+  /// Skip what is damaged (as TraceDamage events) instead of stopping at it with an error. Skipped
+  /// with a damaged line is what can no longer be trusted: the rest of its record or frame, and,
+  /// where several devices record, what follows until the next D: line says whose it is.
   bool salvage = false;
   /// Used for every device that the trace itself gives no descriptor or ids.
   SuppliedDevice supplied;
 };
 
-/// Tells the format from the first bytes and gives its reader.
-/// Error: kSyntax for an empty file or an unknown format.
+/// Tells the format from the first bytes and gives its reader. Reads no further than it must, so a
+/// pipe's first event comes as soon as its line is there.
+/// Error: kIo; kSyntax for an empty file or an unknown format.
 Expected<std::unique_ptr<TraceReader>> open_trace(std::unique_ptr<ByteSource> bytes,
                                                   TraceOptions options = {});
 
