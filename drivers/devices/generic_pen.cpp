@@ -1,0 +1,191 @@
+#include "drivers/devices/generic_pen.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "input/sample/tilt.hpp"
+
+namespace limn {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr double kPi = 3.141592653589793;
+
+/// What the switches of one report say.
+struct Switches {
+  bool in_range = false;
+  bool inverted = false;
+  bool tip = false;
+  bool eraser = false;
+};
+
+Switches read_switches(const hid::PenLayout& layout, Bytes report) noexcept {
+  Switches now;
+  now.inverted = layout.invert.is_set(report);
+  now.eraser = layout.eraser.is_set(report);
+  if (layout.tip_switch) {
+    now.tip = layout.tip_switch.is_set(report);
+  } else if (layout.pressure) {
+    const auto& range = layout.pressure.reader.logical();
+    now.tip = layout.pressure.reader.read(report).value_or(range.minimum) > range.minimum;
+  }
+  now.in_range = layout.in_range.is_set(report) || layout.sense.is_set(report) ||
+                 (!layout.in_range && !layout.sense);
+  return now;
+}
+
+PenState state_of(const Switches& now) noexcept {
+  if (!now.in_range) return PenState::kOutOfRange;
+  if (now.eraser || (now.inverted && now.tip)) return PenState::kErasing;
+  if (now.inverted) return PenState::kInRangeErasing;
+  return now.tip ? PenState::kInContact : PenState::kInRange;
+}
+
+std::int32_t clamp_count(std::int64_t value) noexcept {
+  using Limits = std::numeric_limits<std::int32_t>;
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(value, Limits::min(), Limits::max()));
+}
+
+/// value in limn's unit, within low..high, or nothing.
+std::optional<double> read(const hid::AxisReader& axis, Bytes report, double low,
+                           double high) noexcept {
+  const auto counts = axis.reader.read(report);
+  if (!counts) return std::nullopt;
+  return std::clamp(axis.map(*counts), low, high);
+}
+
+/// A turn into 0 .. 2 pi, whatever range the device counts it in.
+std::optional<double> read_turn(const hid::AxisReader& axis, Bytes report) noexcept {
+  const auto turn = read(axis, report, -2 * kPi, 2 * kPi);
+  if (!turn) return std::nullopt;
+  return *turn < 0 ? *turn + 2 * kPi : *turn;
+}
+
+void set_axis(PenSample& sample, PenAxis axis, double PenSample::*member,
+              std::optional<double> value) noexcept {
+  if (!value) return;
+  sample.axes.add(axis);
+  sample.*member = *value;
+}
+
+void set_position(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept {
+  // Fields are at most 64 bits of counts; a tablet of 1 km keeps any garbage finite.
+  constexpr double kFarthestMm = 1e6;
+  if (layout.data_valid && !layout.data_valid.is_set(report)) return;
+  const auto x = layout.x.reader.read(report);
+  const auto y = layout.y.reader.read(report);
+  if (!x || !y) return;
+  sample.raw.x = clamp_count(*x);
+  sample.raw.y = clamp_count(*y);
+  set_axis(sample, PenAxis::kX, &PenSample::x_mm,
+           std::clamp(layout.x.map(*x), -kFarthestMm, kFarthestMm));
+  set_axis(sample, PenAxis::kY, &PenSample::y_mm,
+           std::clamp(layout.y.map(*y), -kFarthestMm, kFarthestMm));
+}
+
+void set_serial(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept {
+  const std::uint64_t low = layout.serial.read_bits(report).value_or(0);
+  const std::uint64_t high = layout.serial_high.read_bits(report).value_or(0);
+  const std::uint64_t serial = layout.serial_high ? (high << 32 | (low & 0xFFFFFFFFU)) : low;
+  if (serial == 0) return;  // not known (yet)
+  sample.axes.add(PenAxis::kSerial);
+  sample.serial = serial;
+}
+
+void set_tilt(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept {
+  if (!layout.tilt_x && !layout.tilt_y) {
+    constexpr double kDegreesPerRadian = 57.29577951308232;
+    const auto altitude = read(layout.altitude, report, -2 * kPi, 2 * kPi);
+    const auto azimuth = read(layout.azimuth, report, -2 * kPi, 2 * kPi);
+    if (!altitude || !azimuth) return;
+    const Tilt tilt =
+        tilt_from_altitude_azimuth(*altitude * kDegreesPerRadian, *azimuth * kDegreesPerRadian);
+    set_axis(sample, PenAxis::kTiltX, &PenSample::tilt_x_rad, tilt.x_rad);
+    set_axis(sample, PenAxis::kTiltY, &PenSample::tilt_y_rad, tilt.y_rad);
+    return;
+  }
+  set_axis(sample, PenAxis::kTiltX, &PenSample::tilt_x_rad,
+           read(layout.tilt_x, report, -kPi / 2, kPi / 2));
+  set_axis(sample, PenAxis::kTiltY, &PenSample::tilt_y_rad,
+           read(layout.tilt_y, report, -kPi / 2, kPi / 2));
+}
+
+void set_other_axes(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept {
+  if (const auto counts = layout.pressure.reader.read(report)) {
+    sample.raw.pressure = clamp_count(*counts);
+    set_axis(sample, PenAxis::kPressure, &PenSample::pressure,
+             std::clamp(layout.pressure.map(*counts), 0.0, 1.0));
+  }
+  set_tilt(layout, report, sample);
+  set_axis(sample, PenAxis::kTwist, &PenSample::twist_rad, read_turn(layout.twist, report));
+  set_axis(sample, PenAxis::kDistance, &PenSample::distance, read(layout.distance, report, 0, 1));
+}
+
+PenButtons read_buttons(const hid::PenLayout& layout, Bytes report) noexcept {
+  unsigned pressed = 0;
+  if (layout.barrel_switch.is_set(report)) pressed |= 1U;
+  if (layout.secondary_barrel_switch.is_set(report)) pressed |= 2U;
+  if (layout.barrel_switch3.is_set(report)) pressed |= 4U;
+  return static_cast<PenButtons>(pressed);
+}
+
+bool ends_before_position(const hid::PenLayout& layout, Bytes report) noexcept {
+  const auto end = [](const hid::FieldReader& reader) {
+    return (std::size_t{reader.bit_offset()} + reader.bit_size() + 7) / 8;
+  };
+  return report.size() < std::max(end(layout.x.reader), end(layout.y.reader));
+}
+
+}  // namespace
+
+GenericPen::GenericPen(std::vector<hid::PenLayout> layouts) : layouts_(std::move(layouts)) {
+  std::erase_if(layouts_, [](const hid::PenLayout& layout) {
+    return !layout.x.has_unit || !layout.y.has_unit;
+  });
+}
+
+const hid::PenLayout* GenericPen::layout_for(Bytes report) const noexcept {
+  // Where one report has room for several pens, the first in range speaks.
+  const hid::PenLayout* first = nullptr;
+  for (const hid::PenLayout& layout : layouts_) {
+    if (!layout.matches(report)) continue;
+    if (first == nullptr) first = &layout;
+    if (read_switches(layout, report).in_range) return &layout;
+  }
+  return first;
+}
+
+std::uint32_t GenericPen::count_lost(const hid::PenLayout& layout, Bytes report) noexcept {
+  const auto number = layout.sequence.read(report);
+  if (!number) return 0;
+  const auto previous = std::exchange(last_sequence_, number);
+  const auto& range = layout.sequence.logical();
+  const std::int64_t numbers = range.maximum - range.minimum + 1;
+  if (!previous || numbers <= 1 || !range.contains(*number) || !range.contains(*previous)) return 0;
+  const std::int64_t step = (*number - *previous + numbers) % numbers;
+  return step == 0 ? 0 : static_cast<std::uint32_t>(step - 1);
+}
+
+ReportClass GenericPen::decode(Bytes report, Timestamp time, PenOutput& out) noexcept {
+  const hid::PenLayout* layout = layout_for(report);
+  if (layout == nullptr) return ReportClass::kUnknownId;
+  if (ends_before_position(*layout, report)) return ReportClass::kTooShort;
+  PenSample sample;
+  sample.time = time;
+  sample.state = state_of(read_switches(*layout, report));
+  const bool erasing =
+      sample.state == PenState::kErasing || sample.state == PenState::kInRangeErasing;
+  sample.tool = erasing ? Tool::kEraser : Tool::kPen;
+  if (sample.state == PenState::kOutOfRange) sample.tool = out.machine().last().tool;
+  sample.buttons = read_buttons(*layout, report);
+  sample.lost = count_lost(*layout, report);
+  set_position(*layout, report, sample);
+  set_other_axes(*layout, report, sample);
+  set_serial(*layout, report, sample);
+  out.push(sample);
+  return ReportClass::kPen;
+}
+
+}  // namespace limn

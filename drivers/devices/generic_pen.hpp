@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "drivers/devices/pen_output.hpp"
+#include "drivers/devices/report_class.hpp"
+#include "drivers/hid/pen_layout.hpp"
+#include "input/base/time.hpp"
+
+namespace limn {
+
+/// Decodes the pen reports that a descriptor itself explains, with the meaning that the Windows pen
+/// guidelines give to the switches:
+///
+///     In Range or Sense, else any report    in range (a device without In Range never leaves)
+///     Tip Switch, else pressure above 0     in contact
+///     Invert                                the eraser's end is down, in range
+///     Eraser                                the eraser touches
+///
+/// Data Valid 0, and Null State, take the values away. Positions in mm from the descriptor's
+/// physical ranges. Reports that a sequence number shows missing are counted as `lost`.
+class GenericPen {
+ public:
+  /// Layouts in the order of hid::pen_layouts; those without a physical size for both positions are
+  /// left out.
+  explicit GenericPen(std::vector<hid::PenLayout> layouts);
+
+  /// Whether there is nothing to decode.
+  bool empty() const noexcept { return layouts_.empty(); }
+  const std::vector<hid::PenLayout>& layouts() const noexcept { return layouts_; }
+
+  /// Pushes at most one sample. kUnknownId where no layout has the report's ID, kTooShort where the
+  /// report ends before the position.
+  ReportClass decode(std::span<const std::uint8_t> report, Timestamp time, PenOutput& out) noexcept;
+
+ private:
+  using Bytes = std::span<const std::uint8_t>;
+
+  std::vector<hid::PenLayout> layouts_;
+  std::optional<std::int64_t> last_sequence_;
+
+  const hid::PenLayout* layout_for(Bytes report) const noexcept;
+  std::uint32_t count_lost(const hid::PenLayout& layout, Bytes report) noexcept;
+};
+
+}  // namespace limn

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "input/base/expect.hpp"
+#include "input/sample/pen_sample.hpp"
+#include "input/sample/pen_state_machine.hpp"
+
+namespace limn {
+
+/// Collects the samples of one report behind a state machine, in fixed memory.
+class PenOutput {
+ public:
+  /// Most samples that a decoder pushes for one report: an Intuos Pro 2 bundles seven frames over
+  /// Bluetooth, and a tool may have to leave before them.
+  static constexpr std::size_t kMaxPushed = 8;
+  static constexpr std::size_t kCapacity = kMaxPushed * PenStateMachine::kMaxSamples;
+
+  void begin(DeviceIndex device) noexcept {
+    device_ = device;
+    count_ = 0;
+  }
+
+  /// Precondition: at most kMaxPushed times after begin().
+  void push(const PenSample& sample) noexcept {
+    for (const PenSample& legal : machine_.push(sample)) {
+      LIMN_EXPECT(count_ < kCapacity);
+      samples_[count_] = legal;
+      samples_[count_].device = device_;
+      ++count_;
+    }
+  }
+
+  /// The device went away: its tool lifts and leaves range, at `time`. Nothing to repair.
+  void disconnect(Timestamp time) noexcept {
+    PenSample gone = machine_.last();
+    if (gone.state == PenState::kOutOfRange) return;
+    gone.time = time;
+    gone.lost = 0;
+    gone.buttons = 0;
+    if (in_contact(gone.state)) {
+      gone.state = gone.tool == Tool::kEraser ? PenState::kInRangeErasing : PenState::kInRange;
+      gone.pressure = 0;
+      gone.raw.pressure = 0;
+      push(gone);
+    }
+    PenSample out_of_range;
+    out_of_range.time = time;
+    out_of_range.tool = gone.tool;
+    push(out_of_range);
+  }
+
+  std::span<const PenSample> samples() const noexcept { return {samples_.data(), count_}; }
+  const PenStateMachine& machine() const noexcept { return machine_; }
+
+ private:
+  std::array<PenSample, kCapacity> samples_;
+  std::size_t count_ = 0;
+  DeviceIndex device_ = 0;
+  PenStateMachine machine_;
+};
+
+}  // namespace limn

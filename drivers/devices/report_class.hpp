@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace limn {
+
+/// What a report was for. Only kPen can come with samples; kPen without any means: the pen said
+/// nothing that has a place in a sample (a tool announced itself, or has not yet).
+enum class ReportClass : std::uint8_t {
+  kPen,
+  kTouch,      ///< fingers
+  kPad,        ///< keys, rings and strips of the tablet itself
+  kMouse,      ///< relative mouse of a tablet outside its own mode
+  kStatus,     ///< battery, wireless link, tool lists
+  kOther,      ///< named by the descriptor, but nothing of the above
+  kUnknownId,  ///< known neither to the descriptor nor to the device's table
+  kTooShort,   ///< ends before the pen's first needed field
+};
+inline constexpr int kReportClassCount = 8;
+
+/// "pen", "touch", "pad", "mouse", "status", "other", "unknown report ID", "too short".
+std::string_view name(ReportClass report) noexcept;
+
+}  // namespace limn

@@ -1,0 +1,236 @@
+#include "drivers/devices/trace_decoder.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace limn {
+
+struct TraceDecoder::Device {
+  TraceDevice described;
+  TraceDeviceSummary summary;
+  std::optional<PenDecoder> reports;
+  std::optional<EvdevPenDecoder> frames;
+  bool stale = true;                  // a decoder is to be made (again) before the next report
+  bool refused = false;               // salvaging: nothing can be decoded
+  std::uint64_t repaired_before = 0;  // by decoders that a new description replaced
+  Timestamp last_time{};
+
+  std::uint64_t repaired_now() const noexcept {
+    return (reports ? reports->repaired_transitions() : 0) +
+           (frames ? frames->repaired_transitions() : 0);
+  }
+};
+
+std::uint64_t TraceDeviceSummary::all_reports() const noexcept {
+  return std::accumulate(reports.begin(), reports.end(), undecodable_reports);
+}
+
+std::uint64_t TraceSummary::repaired_transitions() const noexcept {
+  return std::accumulate(devices.begin(), devices.end(), std::uint64_t{0},
+                         [](std::uint64_t sum, const TraceDeviceSummary& device) {
+                           return sum + device.repaired_transitions;
+                         });
+}
+
+TraceDecoder::TraceDecoder(std::unique_ptr<TraceReader> reader, TraceDecoderOptions options)
+    : reader_(std::move(reader)), options_(options) {}
+TraceDecoder::TraceDecoder(TraceDecoder&&) noexcept = default;
+TraceDecoder& TraceDecoder::operator=(TraceDecoder&&) noexcept = default;
+TraceDecoder::~TraceDecoder() = default;
+
+Expected<const PenSample*> TraceDecoder::next() {
+  if (error_) return tl::unexpected(*error_);
+  while (pending_.empty() && !ended_) {
+    auto event = reader_->next();
+    const Step step =
+        event ? std::visit([this](const auto& content) { return take(content); }, *event)
+              : Step(tl::unexpected(std::move(event.error())));
+    if (!step) {
+      error_ = step.error();
+      return tl::unexpected(*error_);
+    }
+  }
+  if (pending_.empty()) return nullptr;
+  sample_ = pending_.front();
+  sample_.time -= start_.value_or(Timestamp{});
+  pending_ = pending_.subspan(1);
+  ++samples_;
+  return &sample_;
+}
+
+TraceSummary TraceDecoder::summary() const {
+  TraceSummary summary;
+  summary.samples = samples_;
+  summary.damaged_parts = damaged_parts_;
+  summary.damage = damage_;
+  for (const auto& device : devices_) {
+    summary.devices.push_back(device->summary);
+    summary.devices.back().repaired_transitions = device->repaired_before + device->repaired_now();
+  }
+  return summary;
+}
+
+TraceDecoder::Step TraceDecoder::take(TraceEnd) {
+  ended_ = true;
+  return {};
+}
+
+TraceDecoder::Step TraceDecoder::take(const DeviceDescribed& described) {
+  auto found = device(described.device->index);
+  if (!found) return tl::unexpected(std::move(found.error()));
+  Device& device = **found;
+  device.described = *described.device;
+  device.summary.name = described.device->name;
+  device.summary.vendor = described.device->vendor;
+  device.summary.product = described.device->product;
+  device.stale = true;
+  // A device described anew was replugged: what it held in range is gone.
+  if (device.reports) {
+    give(device, device.reports->disconnect(device.summary.index, device.last_time),
+         device.last_time);
+  } else if (device.frames) {
+    give(device, device.frames->disconnect(device.summary.index, device.last_time),
+         device.last_time);
+  }
+  return {};
+}
+
+TraceDecoder::Step TraceDecoder::take(const Report& report) {
+  start_at(report.time);
+  auto found = device(report.device);
+  if (!found) return tl::unexpected(std::move(found.error()));
+  Device& device = **found;
+  if (auto ready = prepare(device); !ready) return ready;
+  if (device.refused) {
+    ++device.summary.undecodable_reports;
+    return {};
+  }
+  const PenDecoder::Decoded decoded = device.reports->decode(report);
+  ++device.summary.reports[static_cast<std::size_t>(decoded.kind)];
+  if (decoded.kind == ReportClass::kUnknownId && !options_.salvage) {
+    const unsigned id = report.bytes.empty() ? 0 : report.bytes[0];
+    return tl::unexpected(located(
+        Error{ErrorCode::kUnknown, "",
+              "report ID " + std::to_string(id) + " of " + label(device) +
+                  " is known neither to its report descriptor nor to the device tables",
+              "check that the descriptor belongs to this interface, or skip such reports with "
+              "--salvage"}));
+  }
+  give(device, decoded.samples, report.time);
+  return {};
+}
+
+TraceDecoder::Step TraceDecoder::take(const EvdevFrame& frame) {
+  start_at(frame.events.empty() ? frame.time : frame.events.front().time);
+  auto found = device(frame.device);
+  if (!found) return tl::unexpected(std::move(found.error()));
+  Device& device = **found;
+  ++device.summary.frames;
+  if (auto ready = prepare_kernel(device); !ready) return ready;
+  if (!device.refused) give(device, device.frames->decode(frame), frame.time);
+  return {};
+}
+
+TraceDecoder::Step TraceDecoder::take(const PenSample& sample) {
+  start_at(sample.time);
+  auto found = device(sample.device);
+  if (!found) return tl::unexpected(std::move(found.error()));
+  Device& device = **found;
+  device.summary.kind = "stroke CSV";
+  sample_ = sample;
+  give(device, {&sample_, 1}, sample.time);
+  return {};
+}
+
+TraceDecoder::Step TraceDecoder::take(const TraceNote&) { return {}; }
+
+TraceDecoder::Step TraceDecoder::take(const TraceDamage& damage) {
+  ++damaged_parts_;
+  if (damage_.size() < TraceSummary::kDamageKept) damage_.push_back(damage.error);
+  return {};
+}
+
+Expected<TraceDecoder::Device*> TraceDecoder::device(DeviceIndex index) {
+  const auto found = std::find_if(devices_.begin(), devices_.end(), [index](const auto& device) {
+    return device->summary.index == index;
+  });
+  if (found != devices_.end()) return found->get();
+  if (devices_.size() >= kMaxDevices) {
+    return tl::unexpected(located(Error{ErrorCode::kLimit, "",
+                                        "more than " + std::to_string(kMaxDevices) + " devices",
+                                        "split the recording"}));
+  }
+  devices_.push_back(std::make_unique<Device>());
+  devices_.back()->summary.index = index;
+  return devices_.back().get();
+}
+
+TraceDecoder::Step TraceDecoder::prepare(Device& device) {
+  if (!device.stale && (device.reports || device.refused)) return {};
+  device.stale = false;
+  device.refused = false;
+  device.repaired_before += device.repaired_now();
+  device.reports.reset();
+  device.frames.reset();
+  auto decoder = PenDecoder::make(device.described.vendor, device.described.product,
+                                  device.described.report_descriptor);
+  if (!decoder) return refuse(device, std::move(decoder.error()));
+  device.reports.emplace(std::move(*decoder));
+  const PenSpec* spec = device.reports->spec();
+  device.summary.kind = spec != nullptr             ? std::string(name(spec->family))
+                        : device.reports->has_pen() ? "HID pen"
+                                                    : "no pen";
+  device.summary.range = device.reports->range();
+  return {};
+}
+
+TraceDecoder::Step TraceDecoder::prepare_kernel(Device& device) {
+  if (!device.stale && (device.frames || device.refused)) return {};
+  device.stale = false;
+  device.refused = false;
+  device.repaired_before += device.repaired_now();
+  device.reports.reset();
+  device.frames.reset();
+  auto decoder = EvdevPenDecoder::make(device.described);
+  if (!decoder) return refuse(device, std::move(decoder.error()));
+  device.frames.emplace(std::move(*decoder));
+  device.summary.kind = device.frames->has_pen() ? "kernel pen" : "no pen";
+  device.summary.range = device.frames->range();
+  return {};
+}
+
+TraceDecoder::Step TraceDecoder::refuse(Device& device, Error error) {
+  if (!options_.salvage) {
+    error.what = label(device) + ": " + error.what;
+    return tl::unexpected(located(std::move(error)));
+  }
+  device.refused = true;
+  device.summary.kind = "unknown";
+  return {};
+}
+
+Error TraceDecoder::located(Error error) const {
+  const std::string place = reader_->place();
+  error.at = error.at.empty() ? place : place + ", " + error.at;
+  return error;
+}
+
+std::string TraceDecoder::label(const Device& device) const {
+  std::string text = "device " + std::to_string(device.summary.index);
+  if (!device.summary.name.empty()) text += " (" + device.summary.name + ")";
+  return text;
+}
+
+void TraceDecoder::start_at(Timestamp time) noexcept {
+  if (!start_) start_ = time;
+}
+
+void TraceDecoder::give(Device& device, std::span<const PenSample> samples,
+                        Timestamp time) noexcept {
+  device.last_time = time;
+  device.summary.samples += samples.size();
+  pending_ = samples;
+}
+
+}  // namespace limn

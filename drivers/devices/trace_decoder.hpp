@@ -1,0 +1,122 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "drivers/devices/evdev_pen_decoder.hpp"
+#include "drivers/devices/pen_decoder.hpp"
+#include "drivers/devices/report_class.hpp"
+#include "input/base/error.hpp"
+#include "input/sample/pen_sample.hpp"
+#include "input/trace/trace.hpp"
+
+namespace limn {
+
+/// What one device of a trace was and did.
+struct TraceDeviceSummary {
+  DeviceIndex index = 0;
+  std::string name;
+  std::uint16_t vendor = 0;
+  std::uint16_t product = 0;
+  /// Family of the table's row, "HID pen", "kernel pen", "no pen", or "unknown".
+  std::string kind = "unknown";
+  PenRange range;
+  std::uint64_t samples = 0;
+  std::uint64_t repaired_transitions = 0;
+  std::uint64_t frames = 0;                                ///< evemu frames
+  std::array<std::uint64_t, kReportClassCount> reports{};  ///< by ReportClass
+  std::uint64_t undecodable_reports = 0;  ///< salvaged: of a device that limn knows nothing of
+
+  std::uint64_t count(ReportClass kind_of_report) const noexcept {
+    return reports[static_cast<std::size_t>(kind_of_report)];
+  }
+  std::uint64_t all_reports() const noexcept;
+};
+
+struct TraceSummary {
+  std::vector<TraceDeviceSummary> devices;  ///< in the order of their first mention
+  std::uint64_t samples = 0;                ///< of all devices, those of stroke CSV included
+  std::uint64_t damaged_parts = 0;
+  std::vector<Error> damage;  ///< the first kDamageKept of them
+
+  static constexpr std::size_t kDamageKept = 16;
+  std::uint64_t repaired_transitions() const noexcept;
+};
+
+struct TraceDecoderOptions {
+  /// Count reports that cannot be decoded instead of stopping at them with an error.
+  bool salvage = false;
+};
+
+/// Trace -> PenSamples of all its devices, in file order, pulled one by one. Sample times are the
+/// file's minus that of its first report, frame or sample. Constant memory.
+///
+///     TraceDecoder decoder(std::move(reader));
+///     for (;;) {
+///       auto sample = decoder.next();
+///       if (!sample) return sample.error();
+///       if (*sample == nullptr) break;
+///       use(**sample);
+///     }
+class TraceDecoder {
+ public:
+  explicit TraceDecoder(std::unique_ptr<TraceReader> reader, TraceDecoderOptions options = {});
+  TraceDecoder(TraceDecoder&&) noexcept;
+  TraceDecoder& operator=(TraceDecoder&&) noexcept;
+  ~TraceDecoder();
+
+  /// The next sample, valid until the next call, or nullptr at the end.
+  ///
+  /// Errors: the reader's; kMissing for a report of a device without descriptor or table row, and
+  /// for a pen without a size; kUnknown for a report ID that neither descriptor nor table knows;
+  /// kLimit for more than kMaxDevices devices; a broken descriptor's. `at` names the place in the
+  /// file. After an error the decoder is spent and gives the same error again.
+  Expected<const PenSample*> next();
+
+  /// What was seen so far.
+  TraceSummary summary() const;
+
+  static constexpr std::size_t kMaxDevices = 256;
+
+ private:
+  struct Device;
+  using Step = Expected<void>;
+
+  std::unique_ptr<TraceReader> reader_;
+  TraceDecoderOptions options_;
+  std::vector<std::unique_ptr<Device>> devices_;
+  std::span<const PenSample> pending_;
+  PenSample sample_;
+  std::optional<Timestamp> start_;
+  std::optional<Error> error_;
+  std::uint64_t samples_ = 0;
+  std::uint64_t damaged_parts_ = 0;
+  std::vector<Error> damage_;
+  bool ended_ = false;
+
+  Step take(TraceEnd);
+  Step take(const DeviceDescribed& described);
+  Step take(const Report& report);
+  Step take(const EvdevFrame& frame);
+  Step take(const PenSample& sample);
+  Step take(const TraceNote& note);
+  Step take(const TraceDamage& damage);
+
+  Expected<Device*> device(DeviceIndex index);
+  Step prepare(Device& device);
+  Step prepare_kernel(Device& device);
+  Step refuse(Device& device, Error error);
+  Error located(Error error) const;
+  std::string label(const Device& device) const;
+  void start_at(Timestamp time) noexcept;
+  void give(Device& device, std::span<const PenSample> samples, Timestamp time) noexcept;
+};
+
+}  // namespace limn

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "input/sample/pen_sample.hpp"
+
+namespace limn::wacom {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr double kRadiansPerDegree = 0.017453292519943295;
+
+constexpr std::int32_t le16(Bytes b, std::size_t at) noexcept { return b[at] | b[at + 1] << 8; }
+constexpr std::int32_t be16(Bytes b, std::size_t at) noexcept { return b[at] << 8 | b[at + 1]; }
+constexpr std::int32_t signed8(std::uint8_t byte) noexcept {
+  return byte < 128 ? byte : byte - 256;
+}
+constexpr bool has(std::uint8_t byte, unsigned mask) noexcept { return (byte & mask) != 0; }
+
+/// Bit `number` (from 0) of PenButtons where `pressed`.
+constexpr PenButtons button(bool pressed, unsigned number) noexcept {
+  return static_cast<PenButtons>(pressed ? 1U << number : 0U);
+}
+
+constexpr PenButtons buttons(bool first, bool second) noexcept {
+  return static_cast<PenButtons>(button(first, 0) | button(second, 1));
+}
+
+constexpr PenButtons buttons(bool first, bool second, bool third, bool fourth = false,
+                             bool fifth = false) noexcept {
+  return static_cast<PenButtons>(buttons(first, second) | button(third, 2) | button(fourth, 3) |
+                                 button(fifth, 4));
+}
+
+/// The state of `tool` in range: a mouse never touches.
+constexpr PenState state_of(Tool tool, bool touching) noexcept {
+  if (tool == Tool::kEraser) return touching ? PenState::kErasing : PenState::kInRangeErasing;
+  return touching && tool == Tool::kPen ? PenState::kInContact : PenState::kInRange;
+}
+
+/// A turn in steps of 0.2 degrees, -900 to 899 (or any other), to 0 .. 2 pi.
+constexpr double twist_of_fifths(std::int32_t fifths) noexcept {
+  constexpr std::int32_t kTurn = 1800;
+  const std::int32_t within = ((fifths % kTurn) + kTurn) % kTurn;
+  return within * 0.2 * kRadiansPerDegree;
+}
+
+}  // namespace limn::wacom

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "input/sample/pen_sample.hpp"
+
+namespace limn {
+
+/// Whether a pen may report `to` right after `from`:
+///
+///     out_of_range <-> in_range         <-> in_contact
+///     out_of_range <-> in_range_erasing <-> erasing
+///
+/// and any state after itself.
+bool is_legal_transition(PenState from, PenState to) noexcept;
+
+/// Lets only legal transitions pass, by inserting the samples that the device left out:
+///
+///     into contact       a copy of the new sample, in range, without pressure
+///     out of contact     a copy of the last sample, in range, without pressure
+///     to another tool    through out_of_range, without position (pen, eraser and tablet mouse are
+///                        three tools, even where two are ends of one stylus)
+///
+/// all at the new sample's time, with the buttons of the sample they copy. `lost` of the new sample
+/// moves to the first sample given for it. One machine a device; not thread-safe.
+class PenStateMachine {
+ public:
+  /// Most samples given for one: lift, leave, enter, contact.
+  static constexpr std::size_t kMaxSamples = 4;
+
+  /// The samples that stand for `sample`, itself the last; valid until the next call. No heap.
+  std::span<const PenSample> push(const PenSample& sample) noexcept;
+
+  /// The last sample given; kOutOfRange before the first.
+  const PenSample& last() const noexcept { return last_; }
+
+  /// Illegal transitions that were repaired so far.
+  std::uint64_t repaired() const noexcept { return repaired_; }
+
+  /// Forgets the last sample, as after a replug; keeps the count.
+  void reset() noexcept { last_ = PenSample{}; }
+
+ private:
+  std::array<PenSample, kMaxSamples> out_;
+  PenSample last_;
+  std::uint64_t repaired_ = 0;
+};
+
+}  // namespace limn
