@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "input/base/error.hpp"
+#include "modeler/app/output_format.hpp"
+
+namespace limn::app {
+
+/// An Error and the file it is about ("-" for a standard stream, empty for none).
+struct Failure {
+  std::string file;
+  Error error;
+  bool usage = false;  ///< the command line is wrong, not the data
+};
+
+/// How a command ends. main() prints a failure as one line and exits with 1, or 2 for usage.
+using Outcome = tl::expected<void, Failure>;
+
+/// A wrong command line: what is wrong, and what to write instead.
+inline tl::unexpected<Failure> usage_error(std::string what, std::string remedy) {
+  return tl::unexpected<Failure>(
+      Failure{"", Error{ErrorCode::kUnknown, "", std::move(what), std::move(remedy)}, true});
+}
+
+/// Gives an Expected of a library the file that it is about.
+template <class T>
+tl::expected<T, Failure> in_file(const std::string& file, Expected<T> result) {
+  if (result) {
+    if constexpr (std::is_void_v<T>) {
+      return {};
+    } else {
+      return std::move(*result);
+    }
+  }
+  return tl::unexpected<Failure>(Failure{file, std::move(result.error()), false});
+}
+
+/// Which recording to read, and what to know of it beforehand.
+struct TraceArguments {
+  std::string path;
+  std::string descriptor_path;  ///< --descriptor, empty for none
+  std::uint16_t vendor = 0;     ///< --id
+  std::uint16_t product = 0;
+  bool salvage = false;
+};
+
+struct DescriptorArguments {
+  std::string path;
+  OutputFormat format = OutputFormat::kText;
+};
+
+struct DecodeArguments {
+  TraceArguments trace;
+  OutputFormat format = OutputFormat::kText;
+};
+
+struct SketchArguments {
+  TraceArguments trace;
+  double tolerance_mm = 0.1;
+  std::vector<std::string> outputs;
+  OutputFormat format = OutputFormat::kText;
+};
+
+struct SimulateArguments {
+  std::string device;
+  std::string drawing = "signature";
+  std::uint64_t seed = 1;
+  bool list = false;
+  std::string output;
+  OutputFormat format = OutputFormat::kText;
+};
+
+Outcome run_descriptor(const DescriptorArguments& arguments);
+Outcome run_decode(const DecodeArguments& arguments);
+Outcome run_sketch(const SketchArguments& arguments);
+Outcome run_simulate(const SimulateArguments& arguments);
+
+}  // namespace limn::app

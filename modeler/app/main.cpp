@@ -1,0 +1,172 @@
+// The command line: its words, nothing else. Each subcommand's work is a run_*() of command.hpp.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include "modeler/app/command.hpp"
+
+namespace limn::app {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+const std::map<std::string, OutputFormat> kFormats = {{"text", OutputFormat::kText},
+                                                      {"json", OutputFormat::kJson},
+                                                      {"jsonl", OutputFormat::kJsonl},
+                                                      {"csv", OutputFormat::kCsv}};
+
+/// One line on standard error, whatever bytes file names and messages hold.
+void print_error(std::string line) {
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  std::fprintf(stderr, "limn: %s\n", line.c_str());
+}
+
+std::string describe(const Failure& failure) {
+  std::string line;
+  if (!failure.file.empty()) line += (failure.file == "-" ? "(stream)" : failure.file) + ": ";
+  if (!failure.error.at.empty()) line += failure.error.at + ": ";
+  line += failure.error.what;
+  if (!failure.error.remedy.empty()) line += "; " + failure.error.remedy;
+  return line;
+}
+
+/// "VID:PID", hexadecimal, as lsusb prints it.
+std::string parse_id(const std::string& text, TraceArguments& trace) {
+  unsigned vendor = 0;
+  unsigned product = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%4x:%4x%c", &vendor, &product, &rest) != 2) {
+    return "'" + text + "' is no VID:PID of hexadecimal digits, such as 28bd:0905";
+  }
+  trace.vendor = static_cast<std::uint16_t>(vendor);
+  trace.product = static_cast<std::uint16_t>(product);
+  return {};
+}
+
+void add_format(CLI::App& command, OutputFormat& format) {
+  command.add_option("--format", format, "What goes to standard output: text, json, jsonl or csv")
+      ->transform(CLI::CheckedTransformer(kFormats).description(""))
+      ->type_name("FORMAT")
+      ->default_str("text");
+}
+
+void add_trace(CLI::App& command, TraceArguments& trace) {
+  command
+      .add_option("TRACE", trace.path,
+                  "A hid-recorder, usbhid-dump, evemu or stroke CSV (t,x,y,p[,alt,az]) recording, "
+                  "told apart by content; - is standard input")
+      ->required()
+      ->type_name("");
+  command
+      .add_option("--descriptor", trace.descriptor_path,
+                  "The report descriptor, for recordings without one (usbhid-dump)")
+      ->type_name("FILE");
+  command
+      .add_option_function<std::string>(
+          "--id",
+          [&trace](const std::string& text) {
+            if (const std::string wrong = parse_id(text, trace); !wrong.empty()) {
+              throw CLI::ValidationError("--id", wrong);
+            }
+          },
+          "USB vendor and product, for recordings without them")
+      ->type_name("VID:PID");
+  command.add_flag("--salvage", trace.salvage,
+                   "Skip what is damaged and say how much, instead of stopping there");
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{
+      "limn turns the bytes of pens into samples, strokes and exact B-spline curves.\n"
+      "See limn(1) for the formats it writes."};
+  app.set_version_flag("--version", "limn " LIMN_VERSION);
+  app.require_subcommand(1);
+  app.name("limn");
+  Outcome outcome;
+
+  DescriptorArguments descriptor;
+  CLI::App* descriptor_command = app.add_subcommand(
+      "descriptor", "Explain a HID report descriptor: reports, fields, usages, ranges, units");
+  descriptor_command
+      ->add_option("FILE", descriptor.path,
+                   "Raw bytes (.bin), hex text, or a recording that holds descriptors; - is "
+                   "standard input")
+      ->required()
+      ->type_name("");
+  add_format(*descriptor_command, descriptor.format);
+  descriptor_command->callback([&] { outcome = run_descriptor(descriptor); });
+
+  DecodeArguments decode;
+  CLI::App* decode_command =
+      app.add_subcommand("decode", "Print a recording's pen samples, one line a sample");
+  add_trace(*decode_command, decode.trace);
+  add_format(*decode_command, decode.format);
+  decode_command->callback([&] { outcome = run_decode(decode); });
+
+  SketchArguments sketch;
+  CLI::App* sketch_command = app.add_subcommand(
+      "sketch", "Fit B-spline curves to a recording's strokes; draw them and export them");
+  add_trace(*sketch_command, sketch.trace);
+  sketch_command
+      ->add_option("--tolerance", sketch.tolerance_mm,
+                   "Largest distance of a curve from any of its samples, in mm")
+      ->type_name("MM")
+      ->check(CLI::PositiveNumber.description(""))
+      ->capture_default_str();
+  sketch_command
+      ->add_option("-o,--output", sketch.outputs,
+                   "Write a file, its type by extension: .svg .pdf .png .step .json; may be given "
+                   "several times; - writes the JSON to standard output instead of the table")
+      ->type_name("FILE")
+      ->type_size(1)
+      ->expected(1)
+      ->take_all();
+  add_format(*sketch_command, sketch.format);
+  sketch_command->callback([&] { outcome = run_sketch(sketch); });
+
+  SimulateArguments simulate;
+  CLI::App* simulate_command =
+      app.add_subcommand("simulate", "Let a simulated device draw, and record it");
+  simulate_command->add_option("DEVICE", simulate.device, "The device: pen")->type_name("");
+  CLI::Option* drawing =
+      simulate_command->add_option("--drawing", simulate.drawing, "What it draws; see --list")
+          ->type_name("NAME")
+          ->capture_default_str();
+  simulate_command->add_option("--seed", simulate.seed, "Another seed is another hand's tremor")
+      ->type_name("N")
+      ->capture_default_str();
+  simulate_command->add_flag("--list", simulate.list, "List devices and drawings")
+      ->excludes(drawing);
+  simulate_command
+      ->add_option("-o,--output", simulate.output,
+                   "The hid-recorder file to write; - is standard output")
+      ->type_name("TRACE");
+  add_format(*simulate_command, simulate.format);
+  simulate_command->callback([&] { outcome = run_simulate(simulate); });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return app.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    const auto commands = app.get_subcommands();
+    const std::string where = commands.empty() ? "limn" : "limn " + commands[0]->get_name();
+    print_error(std::string(error.what()) + "; see " + where + " --help");
+    return kUsage;
+  }
+  if (!outcome) {
+    print_error(describe(outcome.error()));
+    return outcome.error().usage ? kUsage : kFailed;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace limn::app
+
+int main(int argc, char** argv) { return limn::app::run(argc, argv); }

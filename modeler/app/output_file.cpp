@@ -1,0 +1,132 @@
+#include "modeler/app/output_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace limn::app {
+namespace {
+
+constexpr int kClosed = -1;
+
+tl::unexpected<Error> io_error(const std::string& action, int error, std::string remedy) {
+  return fail(ErrorCode::kIo, "",
+              "cannot " + action + ": " + std::generic_category().message(error),
+              std::move(remedy));
+}
+
+std::string remedy_for(int error) {
+  switch (error) {
+    case ENOENT:
+      return "create its folder first";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "choose a place that you may write to";
+    case ENOSPC:
+    case EDQUOT:
+      return "free some space or choose another disk";
+    case EISDIR:
+      return "name a file, not a folder";
+    default:
+      return "choose another place";
+  }
+}
+
+// The permissions that open(2) would give a new file; mkstemp gives 0600.
+mode_t default_mode() {
+  const mode_t mask = umask(0);
+  umask(mask);
+  return 0666 & ~mask;
+}
+
+}  // namespace
+
+OutputFile::OutputFile(std::string path, std::string temporary, int descriptor) noexcept
+    : path_(std::move(path)), temporary_(std::move(temporary)), descriptor_(descriptor) {}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      descriptor_(std::exchange(other.descriptor_, kClosed)) {}
+
+OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
+  if (this != &other) {
+    discard();
+    path_ = std::move(other.path_);
+    temporary_ = std::exchange(other.temporary_, {});
+    descriptor_ = std::exchange(other.descriptor_, kClosed);
+  }
+  return *this;
+}
+
+OutputFile::~OutputFile() { discard(); }
+
+void OutputFile::discard() noexcept {
+  if (descriptor_ != kClosed && descriptor_ != STDOUT_FILENO) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  descriptor_ = kClosed;
+  temporary_.clear();
+}
+
+Expected<OutputFile> OutputFile::open(const std::string& path) {
+  if (path == "-") return OutputFile(path, {}, STDOUT_FILENO);
+
+  struct stat status {};
+  const bool exists = ::stat(path.c_str(), &status) == 0;
+  if (exists && S_ISDIR(status.st_mode)) return io_error("write", EISDIR, remedy_for(EISDIR));
+  if (exists && !S_ISREG(status.st_mode)) {
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0) return io_error("open for writing", errno, remedy_for(errno));
+    return OutputFile(path, {}, descriptor);
+  }
+
+  // A link stays a link: what it points to is replaced, beside itself, so that rename stays within
+  // one file system.
+  std::error_code ignored;
+  const std::filesystem::path target =
+      exists ? std::filesystem::canonical(path, ignored) : std::filesystem::path(path);
+  std::string pattern = target.string() + ".XXXXXX";
+  const int descriptor = ::mkostemp(pattern.data(), O_CLOEXEC);
+  if (descriptor < 0) return io_error("create", errno, remedy_for(errno));
+  ::fchmod(descriptor, exists ? status.st_mode & 07777 : default_mode());
+  return OutputFile(target.string(), std::move(pattern), descriptor);
+}
+
+Expected<void> OutputFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(descriptor_, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return io_error("write", errno, remedy_for(errno));
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+  return {};
+}
+
+Expected<void> OutputFile::commit() {
+  const int descriptor = std::exchange(descriptor_, kClosed);
+  if (descriptor == STDOUT_FILENO) return {};
+  if (!temporary_.empty() && ::fsync(descriptor) != 0) {
+    const int error = errno;
+    ::close(descriptor);
+    return io_error("write", error, remedy_for(error));
+  }
+  if (::close(descriptor) != 0) return io_error("write", errno, remedy_for(errno));
+  if (!temporary_.empty()) {
+    if (::rename(temporary_.c_str(), path_.c_str()) != 0) {
+      return io_error("rename into place", errno, remedy_for(errno));
+    }
+    temporary_.clear();
+  }
+  return {};
+}
+
+}  // namespace limn::app

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "input/sample/pen_sample.hpp"
+#include "modeler/app/output_format.hpp"
+
+namespace limn::app {
+
+/// Writes pen samples one by one, in the contract of `limn decode` (see limn(1)): absent axes are
+/// absent fields in JSON, empty cells in CSV and dots in text. Times in seconds, positions in mm,
+/// angles in degrees.
+///
+/// The objects hold numbers and fixed words only, so nothing needs escaping and a sample costs
+/// a few hundred nanoseconds: recordings of a gigabyte are written without a JSON tree.
+class SampleText {
+ public:
+  /// `with_raw` is false for recordings that hold no device counts.
+  SampleText(OutputFormat format, bool with_raw) : format_(format), with_raw_(with_raw) {}
+
+  /// What stands before the first sample and after the last.
+  void begin(std::string& out) const;
+  void end(std::string& out) const;
+
+  void append(const PenSample& sample, std::string& out);
+
+ private:
+  void append_json(const PenSample& sample, std::string& out) const;
+  void append_csv(const PenSample& sample, std::string& out) const;
+  void append_line(const PenSample& sample, std::string& out) const;
+
+  OutputFormat format_;
+  bool with_raw_;
+  bool first_ = true;
+};
+
+}  // namespace limn::app

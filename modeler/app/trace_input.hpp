@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "drivers/devices/trace_decoder.hpp"
+#include "input/trace/trace.hpp"
+#include "modeler/app/command.hpp"
+
+namespace limn::app {
+
+/// Opens the recording that the arguments name, with the descriptor and ids they supply. Shows the
+/// progress of long reads on standard error where that is a terminal.
+tl::expected<std::unique_ptr<TraceReader>, Failure> open_trace_input(
+    const TraceArguments& arguments);
+
+/// What a decoded recording held, for people: "2100 samples, 2 repaired state transitions".
+std::string summarise(const TraceSummary& summary);
+
+/// "1 sample", "2 samples".
+std::string count_of(std::uint64_t count, std::string_view what);
+
+}  // namespace limn::app

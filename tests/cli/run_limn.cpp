@@ -1,0 +1,61 @@
+#include "tests/cli/run_limn.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/support/recordings.hpp"
+
+extern char** environ;
+
+namespace limn::test {
+namespace fs = std::filesystem;
+
+Run run_limn(const std::vector<std::string>& arguments, std::string_view input) {
+  // Files rather than pipes: no deadlock, whatever the sizes.
+  const TempFolder streams;
+  const std::string out = streams.path() / "out";
+  const std::string err = streams.path() / "err";
+  const std::string in = streams.write("in", input).string();
+  std::vector<std::string> words = {LIMN_BINARY};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  const int create = O_WRONLY | O_CREAT | O_TRUNC;
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, in.c_str(), O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), create, 0600);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), create, 0600);
+  pid_t child = 0;
+  const int error = posix_spawn(&child, LIMN_BINARY, &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  EXPECT_EQ(error, 0) << "cannot start " << LIMN_BINARY;
+  if (error != 0) return {};
+
+  int status = 0;
+  waitpid(child, &status, 0);
+  Run run;
+  run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  run.out = read_file(out);
+  run.err = read_file(err);
+  return run;
+}
+
+std::vector<std::string> names_in(const TempFolder& folder) {
+  std::vector<std::string> found;
+  for (const auto& entry : fs::directory_iterator(folder.path())) {
+    found.push_back(entry.path().filename().string());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace limn::test
