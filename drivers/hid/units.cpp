@@ -128,16 +128,29 @@ Range physical_range(const Field& field) noexcept {
 std::optional<LinearMap> physical_map(const Field& field, Quantity wanted) noexcept {
   if (quantity(field.unit) != wanted || !has_spans(field)) return std::nullopt;
   const Range physical = physical_range(field);
+  const std::int64_t physical_span = physical.maximum - physical.minimum;
+  const std::int64_t logical_span = field.logical.maximum - field.logical.minimum;
   const double unit = limn_units(field.unit);
-  const double span = scale_by_ten(span_of(physical), field.unit_exponent) * unit;
-  const auto minimum = static_cast<double>(physical.minimum);
-  return LinearMap{static_cast<double>(field.logical.minimum), span / span_of(field.logical),
-                   scale_by_ten(minimum, field.unit_exponent) * unit};
+  LinearMap map;
+  map.scale = scale_by_ten(span_of(physical), field.unit_exponent) * unit / span_of(field.logical);
+  // The physical minimum in counts: minima have 32 bits and spans 33, so this cannot overflow.
+  const std::int64_t scaled_minimum = physical.minimum * logical_span;
+  if (scaled_minimum % physical_span == 0) {
+    // Zero lies on a count, which then gives exactly 0: an upright pen has no tilt.
+    map.origin = static_cast<double>(field.logical.minimum - scaled_minimum / physical_span);
+  } else {
+    map.origin = static_cast<double>(field.logical.minimum);
+    map.offset = scale_by_ten(static_cast<double>(physical.minimum), field.unit_exponent) * unit;
+  }
+  return map;
 }
 
 std::optional<LinearMap> position_map(const Field& field) noexcept {
   auto map = physical_map(field, Quantity::kLength);
-  if (map) map->offset = 0;
+  if (map) {
+    map->origin = static_cast<double>(field.logical.minimum);
+    map->offset = 0;
+  }
   return map;
 }
 
