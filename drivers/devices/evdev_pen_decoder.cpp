@@ -274,8 +274,7 @@ PenSample EvdevPenDecoder::current(Timestamp time) noexcept {
     sample.tool = output_->machine().last().tool;
     sample.state = PenState::kOutOfRange;
     // Wacom's driver sets the axes to 0 when a tool leaves: that is no position.
-    const bool reset = wacom_ && sample.raw.x == 0 && sample.raw.y == 0;
-    if (!position_moved_ || reset) {
+    if (wacom_ && sample.raw.x == 0 && sample.raw.y == 0) {
       PenSample bare;
       bare.time = time;
       bare.tool = sample.tool;

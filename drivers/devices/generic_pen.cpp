@@ -141,15 +141,16 @@ bool ends_before_position(const hid::PenLayout& layout, Bytes report) noexcept {
 }  // namespace
 
 GenericPen::GenericPen(std::vector<hid::PenLayout> layouts) : layouts_(std::move(layouts)) {
-  std::erase_if(layouts_, [](const hid::PenLayout& layout) {
-    return !layout.x.has_unit || !layout.y.has_unit;
-  });
+  const auto end = std::stable_partition(
+      layouts_.begin(), layouts_.end(),
+      [](const hid::PenLayout& layout) { return layout.x.has_unit && layout.y.has_unit; });
+  sized_ = static_cast<std::size_t>(end - layouts_.begin());
 }
 
 const hid::PenLayout* GenericPen::layout_for(Bytes report) const noexcept {
   // Where one report has room for several pens, the first in range speaks.
   const hid::PenLayout* first = nullptr;
-  for (const hid::PenLayout& layout : layouts_) {
+  for (const hid::PenLayout& layout : layouts()) {
     if (!layout.matches(report)) continue;
     if (first == nullptr) first = &layout;
     if (read_switches(layout, report).in_range) return &layout;
@@ -170,7 +171,12 @@ std::uint32_t GenericPen::count_lost(const hid::PenLayout& layout, Bytes report)
 
 ReportClass GenericPen::decode(Bytes report, Timestamp time, PenOutput& out) noexcept {
   const hid::PenLayout* layout = layout_for(report);
-  if (layout == nullptr) return ReportClass::kUnknownId;
+  if (layout == nullptr) {
+    const bool sizeless = std::any_of(
+        layouts_.begin() + static_cast<std::ptrdiff_t>(sized_), layouts_.end(),
+        [report](const hid::PenLayout& candidate) { return candidate.matches(report); });
+    return sizeless ? ReportClass::kNoSize : ReportClass::kUnknownId;
+  }
   if (ends_before_position(*layout, report)) return ReportClass::kTooShort;
   PenSample sample;
   sample.time = time;

@@ -24,22 +24,22 @@ namespace limn {
 /// physical ranges. Reports that a sequence number shows missing are counted as `lost`.
 class GenericPen {
  public:
-  /// Layouts in the order of hid::pen_layouts; those without a physical size for both positions are
-  /// left out.
+  GenericPen() = default;
+  /// Layouts in the order of hid::pen_layouts: the first one in range speaks where several match.
   explicit GenericPen(std::vector<hid::PenLayout> layouts);
 
-  /// Whether there is nothing to decode.
-  bool empty() const noexcept { return layouts_.empty(); }
-  const std::vector<hid::PenLayout>& layouts() const noexcept { return layouts_; }
+  /// The layouts whose positions have a physical size: those that give samples.
+  std::span<const hid::PenLayout> layouts() const noexcept { return {layouts_.data(), sized_}; }
 
-  /// Pushes at most one sample. kUnknownId where no layout has the report's ID, kTooShort where the
-  /// report ends before the position.
+  /// Pushes at most one sample. kUnknownId where no layout has the report's ID, kNoSize where it
+  /// has no physical size, kTooShort where the report ends before the position.
   ReportClass decode(std::span<const std::uint8_t> report, Timestamp time, PenOutput& out) noexcept;
 
  private:
   using Bytes = std::span<const std::uint8_t>;
 
-  std::vector<hid::PenLayout> layouts_;
+  std::vector<hid::PenLayout> layouts_;  // those with a size first
+  std::size_t sized_ = 0;
   std::optional<std::int64_t> last_sequence_;
 
   const hid::PenLayout* layout_for(Bytes report) const noexcept;

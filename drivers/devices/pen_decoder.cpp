@@ -37,13 +37,12 @@ std::array<ReportClass, 256> classify(const hid::ReportDescriptor& descriptor) n
 
 /// Notebook pens explain themselves, sizes included; their rows are for lost descriptors.
 bool descriptor_knows_better(const PenSpec& spec, const GenericPen& generic) noexcept {
-  return spec.family == PenFamily::kTabletPc && !generic.empty();
+  return spec.family == PenFamily::kTabletPc && !generic.layouts().empty();
 }
 
 }  // namespace
 
-PenDecoder::PenDecoder(const PenSpec* spec)
-    : generic_(std::vector<hid::PenLayout>{}), output_(std::make_unique<PenOutput>()) {
+PenDecoder::PenDecoder(const PenSpec* spec) : output_(std::make_unique<PenOutput>()) {
   if (spec != nullptr) wacom_.emplace(*spec);
   classes_.fill(ReportClass::kUnknownId);
 }
@@ -65,15 +64,9 @@ Expected<PenDecoder> PenDecoder::make(std::uint16_t vendor, std::uint16_t produc
     return tl::unexpected(std::move(error));
   }
   std::vector<hid::PenLayout> layouts = hid::pen_layouts(*descriptor);
-  const bool declares_pen = !layouts.empty();
   decoder.numbered_ = descriptor->numbered(hid::ReportKind::kInput);
   decoder.classes_ = classify(*descriptor);
   decoder.generic_ = GenericPen(std::move(layouts));
-  if (spec == nullptr && declares_pen && decoder.generic_.empty()) {
-    return fail(ErrorCode::kMissing, "report descriptor",
-                "the pen's X and Y have no physical size (no unit of length)",
-                "correct the descriptor's Physical Maximum and Unit, and give it as --descriptor");
-  }
   if (spec != nullptr && descriptor_knows_better(*spec, decoder.generic_)) decoder.wacom_.reset();
   return decoder;
 }
@@ -109,7 +102,7 @@ PenRange PenDecoder::range() const noexcept {
     range.pressure_max = spec.pressure_max;
     range.width_mm = spec.width_mm();
     range.height_mm = spec.height_mm();
-  } else if (!generic_.empty()) {
+  } else if (!generic_.layouts().empty()) {
     const hid::PenLayout& layout = generic_.layouts().front();
     const hid::Range& x = layout.x.reader.logical();
     const hid::Range& y = layout.y.reader.logical();

@@ -38,8 +38,8 @@ class PenDecoder {
  public:
   /// A decoder for the device with these USB ids and this report descriptor (empty: unknown). A
   /// device that has no pen gets one too: it tells what its reports are and gives no samples.
-  /// Error: kMissing where neither table nor descriptor knows the device; kMissing where there is a
-  /// pen but no physical size; the parser's errors for a descriptor that is needed and broken.
+  /// Error: kMissing where neither table nor descriptor knows the device; the parser's errors for a
+  /// descriptor that is needed and broken.
   static Expected<PenDecoder> make(std::uint16_t vendor, std::uint16_t product,
                                    std::span<const std::uint8_t> report_descriptor);
 
@@ -63,7 +63,7 @@ class PenDecoder {
   std::span<const PenSample> disconnect(DeviceIndex device, Timestamp time) noexcept;
 
   /// Whether samples can come at all.
-  bool has_pen() const noexcept { return wacom_.has_value() || !generic_.empty(); }
+  bool has_pen() const noexcept { return wacom_.has_value() || !generic_.layouts().empty(); }
 
   /// The table's row, or nullptr where the descriptor decides.
   const PenSpec* spec() const noexcept { return wacom_ ? &wacom_->spec() : nullptr; }

@@ -39,11 +39,8 @@ class PenOutput {
     if (gone.state == PenState::kOutOfRange) return;
     gone.time = time;
     gone.lost = 0;
-    gone.buttons = 0;
     if (in_contact(gone.state)) {
       gone.state = gone.tool == Tool::kEraser ? PenState::kInRangeErasing : PenState::kInRange;
-      gone.pressure = 0;
-      gone.raw.pressure = 0;
       push(gone);
     }
     PenSample out_of_range;

@@ -15,11 +15,13 @@ enum class ReportClass : std::uint8_t {
   kStatus,     ///< battery, wireless link, tool lists
   kOther,      ///< named by the descriptor, but nothing of the above
   kUnknownId,  ///< known neither to the descriptor nor to the device's table
-  kTooShort,   ///< ends before the pen's first needed field
+  kTooShort,   ///< ends before the pen's position
+  kNoSize,     ///< a pen's, but the descriptor gives its positions no physical size
 };
-inline constexpr int kReportClassCount = 8;
+inline constexpr int kReportClassCount = 9;
 
-/// "pen", "touch", "pad", "mouse", "status", "other", "unknown report ID", "too short".
+/// "pen", "touch", "pad", "mouse", "status", "other", "unknown report ID", "too short",
+/// "pen without size".
 std::string_view name(ReportClass report) noexcept;
 
 }  // namespace limn

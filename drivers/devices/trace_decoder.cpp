@@ -108,8 +108,23 @@ TraceDecoder::Step TraceDecoder::take(const Report& report) {
   }
   const PenDecoder::Decoded decoded = device.reports->decode(report);
   ++device.summary.reports[static_cast<std::size_t>(decoded.kind)];
-  if (decoded.kind == ReportClass::kUnknownId && !options_.salvage) {
-    const unsigned id = report.bytes.empty() ? 0 : report.bytes[0];
+  if (auto known = check(device, decoded.kind, report.bytes); !known) return known;
+  give(device, decoded.samples, report.time);
+  return {};
+}
+
+TraceDecoder::Step TraceDecoder::check(const Device& device, ReportClass kind,
+                                       std::span<const std::uint8_t> report) const {
+  if (options_.salvage) return {};
+  const unsigned id = report.empty() ? 0 : report[0];
+  if (kind == ReportClass::kNoSize) {
+    return tl::unexpected(
+        located(Error{ErrorCode::kMissing, "",
+                      "the pen of " + label(device) +
+                          " has no physical size: its descriptor gives X and Y no unit of length",
+                      "give a descriptor with Physical Maximum and Unit as --descriptor FILE"}));
+  }
+  if (kind == ReportClass::kUnknownId) {
     return tl::unexpected(located(
         Error{ErrorCode::kUnknown, "",
               "report ID " + std::to_string(id) + " of " + label(device) +
@@ -117,7 +132,6 @@ TraceDecoder::Step TraceDecoder::take(const Report& report) {
               "check that the descriptor belongs to this interface, or skip such reports with "
               "--salvage"}));
   }
-  give(device, decoded.samples, report.time);
   return {};
 }
 

@@ -75,9 +75,9 @@ class TraceDecoder {
   /// The next sample, valid until the next call, or nullptr at the end.
   ///
   /// Errors: the reader's; kMissing for a report of a device without descriptor or table row, and
-  /// for a pen without a size; kUnknown for a report ID that neither descriptor nor table knows;
-  /// kLimit for more than kMaxDevices devices; a broken descriptor's. `at` names the place in the
-  /// file. After an error the decoder is spent and gives the same error again.
+  /// for a pen's report without a physical size; kUnknown for a report ID that neither descriptor
+  /// nor table knows; kLimit for more than kMaxDevices devices; a broken descriptor's. `at` names
+  /// the place in the file. After an error the decoder is spent and gives the same error again.
   Expected<const PenSample*> next();
 
   /// What was seen so far.
@@ -113,6 +113,7 @@ class TraceDecoder {
   Step prepare(Device& device);
   Step prepare_kernel(Device& device);
   Step refuse(Device& device, Error error);
+  Step check(const Device& device, ReportClass kind, std::span<const std::uint8_t> report) const;
   Error located(Error error) const;
   std::string label(const Device& device) const;
   void start_at(Timestamp time) noexcept;

@@ -211,7 +211,7 @@ void WacomDecoder::leave(Timestamp time, PenOutput& out) noexcept {
   out.push(gone);
 }
 
-void WacomDecoder::leave_at(std::int32_t x, std::int32_t y, Timestamp time,
+void WacomDecoder::leave_at(Tool tool, std::int32_t x, std::int32_t y, Timestamp time,
                             PenOutput& out) noexcept {
   if (x == 0 && y == 0) {  // nothing measured: the far left corner itself is out of reach
     leave(time, out);
@@ -219,7 +219,7 @@ void WacomDecoder::leave_at(std::int32_t x, std::int32_t y, Timestamp time,
   }
   PenSample gone;
   gone.time = time;
-  gone.tool = held_.tool;
+  gone.tool = tool;
   set_position(gone, x, y);
   present_ = false;
   held_ = PenSample{};

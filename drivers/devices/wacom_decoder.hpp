@@ -89,7 +89,7 @@ class WacomDecoder {
   void set_distance(PenSample& sample, std::int32_t counts) const noexcept;
   void hold(const PenSample& sample, PenOutput& out) noexcept;
   void leave(Timestamp time, PenOutput& out) noexcept;
-  void leave_at(std::int32_t x, std::int32_t y, Timestamp time, PenOutput& out) noexcept;
+  void leave_at(Tool tool, std::int32_t x, std::int32_t y, Timestamp time, PenOutput& out) noexcept;
 };
 
 /// What an Intuos tool id (20 bits) stands for: mice and lens cursors by the list of known ids,

@@ -42,7 +42,7 @@ void WacomDecoder::pl(Bytes report, Timestamp time, PenOutput& out) noexcept {
 //   6
 void WacomDecoder::ptu(Bytes report, Timestamp time, PenOutput& out) noexcept {
   if (!has(report[1], 0x20)) {
-    leave_at(le16(report, 2), le16(report, 4), time, out);
+    leave_at(held_.tool, le16(report, 2), le16(report, 4), time, out);
     return;
   }
   PenSample sample;
@@ -60,7 +60,7 @@ void WacomDecoder::ptu(Bytes report, Timestamp time, PenOutput& out) noexcept {
 //   8
 void WacomDecoder::dtu(Bytes report, Timestamp time, PenOutput& out) noexcept {
   if (!has(report[1], 0x20)) {
-    leave_at(le16(report, 2), le16(report, 4), time, out);
+    leave_at(held_.tool, le16(report, 2), le16(report, 4), time, out);
     return;
   }
   PenSample sample;
@@ -81,7 +81,7 @@ void WacomDecoder::dtus(Bytes report, Timestamp time, PenOutput& out) noexcept {
   const std::int32_t x = be16(report, 3);
   const std::int32_t y = be16(report, 5);
   if (!has(report[1], 0x80)) {
-    leave_at(x, y, time, out);
+    leave_at(held_.tool, x, y, time, out);
     return;
   }
   const unsigned tool_bits = (report[1] >> 3) & 3U;
@@ -102,7 +102,7 @@ void WacomDecoder::dtus(Bytes report, Timestamp time, PenOutput& out) noexcept {
 //   le16 x 2, y 4; pressure d6 | (d7 & 7) << 8
 void WacomDecoder::tablet_pc(Bytes report, Timestamp time, PenOutput& out) noexcept {
   if (!has(report[1], 0x20)) {
-    leave_at(le16(report, 2), le16(report, 4), time, out);
+    leave_at(held_.tool, le16(report, 2), le16(report, 4), time, out);
     return;
   }
   PenSample sample;

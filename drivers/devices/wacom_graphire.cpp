@@ -40,19 +40,20 @@ void WacomDecoder::penpartner(Bytes report, Timestamp time, PenOutput& out) noex
 void WacomDecoder::graphire(Bytes report, Timestamp time, PenOutput& out) noexcept {
   constexpr unsigned kInRange = 0x80;
   constexpr unsigned kMeasured = 0x10;
+  constexpr std::array<Tool, 4> kTools = {Tool::kPen, Tool::kEraser, Tool::kTabletMouse,
+                                          Tool::kTabletMouse};
+  const Tool tool = kTools[(report[1] >> 5) & 3U];
   if (!has(report[1], kInRange)) {
     if (has(report[1], kMeasured)) {
-      leave_at(le16(report, 2), le16(report, 4), time, out);
+      leave_at(tool, le16(report, 2), le16(report, 4), time, out);
     } else {
       leave(time, out);
     }
     return;
   }
-  constexpr std::array<Tool, 4> kTools = {Tool::kPen, Tool::kEraser, Tool::kTabletMouse,
-                                          Tool::kTabletMouse};
   PenSample sample;
   sample.time = time;
-  sample.tool = kTools[(report[1] >> 5) & 3U];
+  sample.tool = tool;
   set_position(sample, le16(report, 2), le16(report, 4));
   if (sample.tool == Tool::kTabletMouse) {
     graphire_mouse(report, sample);

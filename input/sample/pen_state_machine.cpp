@@ -29,8 +29,6 @@ constexpr PenState hovering(PenState state) noexcept {
 PenSample hovering_copy(const PenSample& sample) noexcept {
   PenSample copy = sample;
   copy.state = hovering(sample.state);
-  copy.pressure = 0;
-  copy.raw.pressure = 0;
   return copy;
 }
 

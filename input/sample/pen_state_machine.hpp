@@ -19,13 +19,14 @@ bool is_legal_transition(PenState from, PenState to) noexcept;
 
 /// Lets only legal transitions pass, by inserting the samples that the device left out:
 ///
-///     into contact       a copy of the new sample, in range, without pressure
-///     out of contact     a copy of the last sample, in range, without pressure
+///     into contact       a copy of the new sample, in range
+///     out of contact     a copy of the last sample, in range
 ///     to another tool    through out_of_range, without position (pen, eraser and tablet mouse are
 ///                        three tools, even where two are ends of one stylus)
 ///
-/// all at the new sample's time, with the buttons of the sample they copy. `lost` of the new sample
-/// moves to the first sample given for it. One machine a device; not thread-safe.
+/// all at the new sample's time. Copies keep what was measured, pressure and raw counts included.
+/// `lost` of the new sample moves to the first sample given for it. One machine a device; not
+/// thread-safe.
 class PenStateMachine {
  public:
   /// Most samples given for one: lift, leave, enter, contact.
