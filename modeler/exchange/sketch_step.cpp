@@ -5,9 +5,10 @@
 
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <Interface_HArray1OfHAsciiString.hxx>
+#include <RWHeaderSection.hxx>
+#include <RWStepAP214.hxx>
 #include <STEPConstruct_Part.hxx>
 #include <STEPConstruct_UnitContext.hxx>
-#include <STEPControl_Controller.hxx>
 #include <STEPEdit.hxx>
 #include <Standard_Failure.hxx>
 #include <StepBasic_ApplicationContext.hxx>
@@ -173,7 +174,10 @@ void describe(const Handle(StepData_StepModel) & model) {
 
 Handle(StepData_StepModel) step_model(const Sketch& sketch) {
   static std::once_flag initialised;
-  std::call_once(initialised, [] { STEPControl_Controller::Init(); });
+  std::call_once(initialised, [] {
+    RWHeaderSection::Init();
+    RWStepAP214::Init();
+  });
 
   Handle(StepBasic_ApplicationContext) context = new StepBasic_ApplicationContext;
   context->Init(text("core data for automotive mechanical design processes"));
