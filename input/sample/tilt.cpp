@@ -1,7 +1,9 @@
 #include "input/sample/tilt.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include "input/base/expect.hpp"
@@ -10,22 +12,53 @@ namespace limn {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr std::size_t kTerms = 10;     // of the sine and cosine series
+constexpr std::size_t kArcTerms = 13;  // of the arc tangent series
 
 struct SineCosine {
   double sine;
   double cosine;
 };
 
-/// Taylor series about 0. For |r| <= pi/4 the first term left out is below 1e-18.
+/// Coefficients in s = r^2 of sin(r) / r (`first` 1) and of cos(r) (`first` 0): alternating
+/// reciprocals of factorials.
+constexpr std::array<double, kTerms> sine_series(int first) {
+  std::array<double, kTerms> series{1.0};
+  for (int k = 1; k < static_cast<int>(kTerms); ++k) {
+    const int n = 2 * k + first;
+    series[static_cast<std::size_t>(k)] =
+        -series[static_cast<std::size_t>(k - 1)] / static_cast<double>(n * (n - 1));
+  }
+  return series;
+}
+
+constexpr std::array<double, kTerms> kSine = sine_series(1);
+constexpr std::array<double, kTerms> kCosine = sine_series(0);
+
+/// Coefficients in s = t^2 of atan(t) / t: alternating reciprocals of odd numbers.
+constexpr std::array<double, kArcTerms> arc_series() {
+  std::array<double, kArcTerms> series{};
+  double sign = 1;
+  for (std::size_t k = 0; k < kArcTerms; ++k) {
+    series[k] = sign / static_cast<double>(2 * k + 1);
+    sign = -sign;
+  }
+  return series;
+}
+
+constexpr std::array<double, kArcTerms> kArcTangent = arc_series();
+
+template <std::size_t kCount>
+double polynomial(const std::array<double, kCount>& coefficients, double s) noexcept {
+  double sum = coefficients[kCount - 1];
+  for (std::size_t k = kCount - 1; k-- > 0;) sum = sum * s + coefficients[k];
+  return sum;
+}
+
+/// For |r| <= pi/4 the first term left out is below 1e-18.
 SineCosine small_angle(double r) noexcept {
   const double s = r * r;
-  double sine = 0;
-  double cosine = 0;
-  for (int n = 17; n >= 1; n -= 2) {
-    sine = 1 - sine * s / ((n + 1) * (n + 2));
-    cosine = 1 - cosine * s / (n * (n + 1));
-  }
-  return {r * sine, cosine};
+  return {r * polynomial(kSine, s), polynomial(kCosine, s)};
 }
 
 /// Exact at multiples of 90 degrees, because the quadrant is split off before any rounding.
@@ -45,15 +78,12 @@ SineCosine sine_cosine(double degrees) noexcept {
   }
 }
 
-/// atan(t) for 0 <= t <= 1: two halvings, atan t = 2 atan(t / (1 + sqrt(1 + t^2))), bring t below
-/// 0.199, where 12 terms of the series leave less than 1e-18.
+/// atan(t) for 0 <= t <= 1. Two halvings, atan t = 2 atan(t / (1 + sqrt(1 + t^2))), bring t below
+/// 0.199, where the first term left out is below 1e-18.
 double arc_tangent_to_one(double t) noexcept {
   t = t / (1 + std::sqrt(1 + t * t));
   t = t / (1 + std::sqrt(1 + t * t));
-  const double s = t * t;
-  double sum = 0;
-  for (int n = 25; n >= 1; n -= 2) sum = 1.0 / n - s * sum;
-  return 4 * t * sum;
+  return 4 * t * polynomial(kArcTangent, t * t);
 }
 
 /// atan2(y, x) for x >= 0; 0 where both are 0.

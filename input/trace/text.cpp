@@ -47,23 +47,27 @@ std::optional<double> parse_real(std::string_view word) noexcept {
 std::optional<Timestamp> parse_seconds(std::string_view word) noexcept {
   constexpr std::int64_t kNanosecond = 1'000'000'000;
   constexpr std::int64_t kMaxSeconds = std::numeric_limits<std::int64_t>::max() / kNanosecond - 1;
-  const std::size_t point = std::min(word.find('.'), word.size());
+  constexpr std::size_t kDecimals = 9;
+  constexpr std::array<std::int64_t, kDecimals + 1> kScale = {
+      1'000'000'000, 100'000'000, 10'000'000, 1'000'000, 100'000, 10'000, 1'000, 100, 10, 1};
+  std::size_t i = 0;
   std::int64_t seconds = 0;
-  for (std::size_t i = 0; i < point; ++i) {
+  for (; i < word.size() && word[i] != '.'; ++i) {
     if (!is_decimal_digit(word[i])) return std::nullopt;
     seconds = seconds * 10 + (word[i] - '0');
     if (seconds > kMaxSeconds) return std::nullopt;
   }
-  std::int64_t fraction = 0;
-  std::int64_t unit = kNanosecond;
-  for (std::size_t i = point + 1; i < word.size(); ++i) {
-    if (!is_decimal_digit(word[i])) return std::nullopt;
-    unit /= 10;
-    fraction += (word[i] - '0') * unit;
-  }
   // "1.", ".5" and "" are no times: a digit is missing where a record was torn.
-  if (point == 0 || point + 1 == word.size()) return std::nullopt;
-  return Timestamp(seconds * kNanosecond + fraction);
+  if (i == 0 || i + 1 == word.size()) return std::nullopt;
+  std::int64_t fraction = 0;
+  std::size_t decimals = 0;
+  for (++i; i < word.size(); ++i) {
+    if (!is_decimal_digit(word[i])) return std::nullopt;
+    if (decimals == kDecimals) continue;
+    fraction = fraction * 10 + (word[i] - '0');
+    ++decimals;
+  }
+  return Timestamp(seconds * kNanosecond + fraction * kScale[decimals]);
 }
 
 HexBytes parse_hex_bytes(std::string_view text, std::span<std::uint8_t> out) noexcept {

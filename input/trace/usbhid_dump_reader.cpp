@@ -70,7 +70,6 @@ Expected<void> UsbhidDumpReader::take(const Line& line) {
   // Only a header has a colon, and within its first number.
   const std::size_t colon = text.substr(0, 4).find(':');
   if (colon != std::string_view::npos) return take_header(text);
-  if (text::is_prose(text)) return {};  // the tool's messages: "Starting dumping interrupt .."
   return take_row(text);
 }
 
@@ -82,11 +81,11 @@ Expected<void> UsbhidDumpReader::take_header(std::string_view text) {
   complete();
   auto address = parse_address(text);
   if (!address) return damaged(text::quoted(text) + " is no record's first line");
-  if (text::is_prose(address->rest)) return {};  // "006:002:000:Interrupt transfer timed out"
   const std::string_view kind = text::take_word(address->rest);
   const std::string_view word = text::take_word(address->rest);
   const bool is_report = kind == "STREAM";
   if (!is_report && kind != "DESCRIPTOR") {
+    if (text::is_prose(kind)) return {};  // "006:002:000:Interrupt transfer timed out"
     return damaged(text::quoted(kind) + " is neither STREAM nor DESCRIPTOR");
   }
   const auto time = text::parse_seconds(word);
@@ -126,12 +125,15 @@ Expected<TrackedDevice*> UsbhidDumpReader::device(std::uint16_t bus, std::uint16
 }
 
 Expected<void> UsbhidDumpReader::take_row(std::string_view text) {
+  const auto room = std::span(bytes_).first(record_.capacity).subspan(record_.size);
+  const auto read = text::parse_hex_bytes(text, room);
+  if (!read.bad.empty()) {
+    if (text::is_prose(text)) return {};  // the tool's messages: "Starting dumping interrupt .."
+    return damaged(text::quoted(read.bad) + " is no two-digit byte");
+  }
   if (record_.kind == RecordKind::kNone) {
     return damaged(text::quoted(text) + " belongs to no record");
   }
-  const auto room = std::span(bytes_).first(record_.capacity).subspan(record_.size);
-  const auto read = text::parse_hex_bytes(text, room);
-  if (!read.bad.empty()) return damaged(text::quoted(read.bad) + " is no two-digit byte");
   if (read.count > kRowBytes) {
     return damaged(text::counted(read.count, "byte") + " in a line that holds at most " +
                        std::to_string(kRowBytes),
