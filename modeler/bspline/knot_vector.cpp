@@ -152,6 +152,20 @@ Expected<KnotVector> KnotVector::make_periodic(int degree, std::span<const doubl
   return make(degree, std::move(values), Closure::kPeriodic);
 }
 
+Expected<KnotVector> KnotVector::rotated(int shift) const {
+  const int round = basis_count() - degree_;
+  LIMN_EXPECT(is_periodic() && shift >= 0 && shift < round);
+  const double period = domain_end() - domain_begin();
+  std::vector<double> values;
+  values.reserve(values_.size());
+  const int count = static_cast<int>(values_.size());
+  for (int i = 0; i < count; ++i) {
+    const int turns = i + shift < count ? 0 : 1 + (i + shift - count) / round;
+    values.push_back(values_[static_cast<std::size_t>(i + shift - turns * round)] + turns * period);
+  }
+  return make(degree_, std::move(values), Closure::kPeriodic);
+}
+
 double KnotVector::clamp(double u) const noexcept {
   const double begin = domain_begin();
   const double end = domain_end();

@@ -51,6 +51,11 @@ class KnotVector {
   /// make().
   static Expected<KnotVector> make_periodic(int degree, std::span<const double> round, double end);
 
+  /// The periodic vector whose domain begins at this one's value degree() + shift, values of the
+  /// next period following. Precondition: is_periodic(), 0 <= shift < basis_count() - degree().
+  /// Error: kOutOfRange where that value is not the last of equal ones.
+  Expected<KnotVector> rotated(int shift) const;
+
   int degree() const noexcept { return degree_; }
   bool is_periodic() const noexcept { return closure_ == Closure::kPeriodic; }
   Closure closure() const noexcept { return closure_; }

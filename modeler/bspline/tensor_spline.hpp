@@ -93,9 +93,11 @@ using BsplineCurve = TensorSpline<1, kDimension>;
 
 /// The same shape on refined knots in one direction: every line of control points goes through
 /// `refinement.map`. Precondition: refinement was made from spline.knots(direction).
+/// Error: kOutOfRange where a new coordinate overflows.
 template <int kDirections, int kDimension>
-TensorSpline<kDirections, kDimension> refine(const TensorSpline<kDirections, kDimension>& spline,
-                                             int direction, const KnotRefinement& refinement);
+Expected<TensorSpline<kDirections, kDimension>> refine(
+    const TensorSpline<kDirections, kDimension>& spline, int direction,
+    const KnotRefinement& refinement);
 
 /// The same shape with knots added in one direction. Errors as for knot vectors.
 template <int kDirections, int kDimension>
@@ -224,8 +226,9 @@ void TensorSpline<kDirections, kDimension>::derivatives(const Parameter& u, cons
 }
 
 template <int kDirections, int kDimension>
-TensorSpline<kDirections, kDimension> refine(const TensorSpline<kDirections, kDimension>& spline,
-                                             int direction, const KnotRefinement& refinement) {
+Expected<TensorSpline<kDirections, kDimension>> refine(
+    const TensorSpline<kDirections, kDimension>& spline, int direction,
+    const KnotRefinement& refinement) {
   using Spline = TensorSpline<kDirections, kDimension>;
   LIMN_EXPECT(refinement.map.columns() == spline.knots(direction).basis_count());
   typename Spline::Knots knots;
@@ -255,9 +258,7 @@ TensorSpline<kDirections, kDimension> refine(const TensorSpline<kDirections, kDi
       if (i / layer % count >= count - degree) points[i] = points[i - (count - degree) * layer];
     }
   }
-  auto made = Spline::make(std::move(knots), std::move(points));
-  LIMN_EXPECT(made.has_value());  // a map is finite, and the counts agree by construction
-  return *std::move(made);
+  return Spline::make(std::move(knots), std::move(points));
 }
 
 }  // namespace limn

@@ -16,8 +16,9 @@ struct FitOptions {
   double tolerance_mm = 0.1;
   /// Whether to look for corners; without, the curve is C2 everywhere it can be.
   bool detect_corners = true;
-  /// Turning of the path, between 0 and pi, from which a sharp bend is a corner.
-  double corner_angle_rad = 0.7;
+  /// Turning of the path, between 0 and pi, from which a sharp bend is a corner where the pen
+  /// slowed down for it, as pens do; where it did not, twice as much is asked for.
+  double corner_angle_rad = 0.5;
   /// Whether a stroke whose end meets its beginning becomes a periodic curve.
   bool allow_closing = true;
 };

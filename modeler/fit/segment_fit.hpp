@@ -1,0 +1,521 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "modeler/fit/knot_placement.hpp"
+#include "modeler/fit/segment_spline.hpp"
+
+namespace limn::fit_detail {
+
+/// One smooth part of a stroke: its samples, where their parameters start from, how it ends.
+template <int kDimension>
+struct Segment {
+  using Point = Eigen::Matrix<double, kDimension, 1>;
+  std::span<const Point> points;   ///< at least two, neighbours distinct
+  std::vector<double> parameters;  ///< smoothed chord length from 0, strictly ascending
+  std::vector<double> chord;       ///< plain chord length from 0, strictly ascending
+  double closing_leg = 0;          ///< periodic only: length from the last sample to the first
+  SegmentEnds<kDimension> ends;
+};
+
+/// Fits one segment within a tolerance at every sample, with few spans:
+///
+///  1. plain least squares on many spans, which cannot lose the way (initial_fit);
+///  2. knots where the shape needs them, by the jumps of its third derivative (place_by_shape);
+///  3. tangent distance minimisation, samples sliding, knots moved by measured errors until every
+///     sample is within tolerance (reach_tolerance);
+///  4. failing that, knots at the samples themselves, up to interpolation (interpolate);
+///  5. windows of spans that can do with one span less lose it, and those that then fail get it
+///  back
+///     (remove_knots).
+///
+/// Each pass is linear in samples and spans, and their number is bounded. All lengths and the
+/// tolerance are in one unit; the caller scales them so that no square over- or underflows.
+template <int kDimension>
+class SegmentFitter {
+ public:
+  using Point = Eigen::Matrix<double, kDimension, 1>;
+  using Spline = SegmentSpline<kDimension>;
+
+  /// `least_gap`: nearest that two knots may lie.
+  SegmentFitter(Segment<kDimension> segment, double tolerance, double least_gap)
+      : samples_(segment.points, std::move(segment.parameters)),
+        chord_(std::move(segment.chord)),
+        closing_leg_(segment.closing_leg),
+        ends_(std::move(segment.ends)),
+        tolerance_(tolerance),
+        least_gap_(least_gap) {}
+
+  /// False where no cubic C2 curve within tolerance was found, interpolation included: then double
+  /// precision is at its end.
+  bool run() {
+    initial_fit();
+    if (hopelessly_dense() || !place_by_shape() || !reach_tolerance()) {
+      if (!has_best_ && !interpolate()) return false;
+    }
+    remove_knots();
+    return true;
+  }
+
+  const Spline& spline() const noexcept { return best_; }
+  const std::vector<double>& parameters() const noexcept { return best_parameters_; }
+
+ private:
+  /// What a sample's error along the curve counts in solve(), once samples slide: small enough for
+  /// the quadratic convergence of tangent distance minimisation, large enough to damp it.
+  static constexpr double kSliding = 0.02;
+  /// The same for the first solve after knots were placed anew, far from the solution.
+  static constexpr double kCautious = 0.2;
+  /// The more a fit is off (in tolerances), the less its tangents can be trusted.
+  static constexpr double kDistrust = 0.05;
+
+  int least_spans() const noexcept { return ends_.periodic ? kLeastPeriodicSpans : 1; }
+  std::size_t sample_count() const noexcept { return samples_.points.size(); }
+
+  /// Parameter of the curve's end: of the last sample, or of the first one a round later.
+  double end_parameter(const std::vector<double>& parameters) const noexcept {
+    return parameters.back() + (ends_.periodic ? closing_leg_ : 0.0);
+  }
+
+  bool solve(double tangential) {
+    // A block row takes 4 d^2 doubles; beyond 64 MB plain distances do, at 4 a row.
+    constexpr double kMostDoubles = 8e6;
+    const double doubles =
+        4.0 * kDimension * kDimension * static_cast<double>(spline_.control_count());
+    return spline_.solve(samples_, ends_, doubles > kMostDoubles ? 1.0 : tangential);
+  }
+
+  /// Slides the samples, and weights them for the next solve: p-norms with growing p pull a least
+  /// squares fit towards the least maximum.
+  void project() {
+    constexpr double kLeastWeight = 0.3;
+    constexpr double kMostWeight = 4.0;
+    worst_ = spline_.project(samples_);
+    for (std::size_t i = 0; i < sample_count(); ++i) {
+      const double x = samples_.error[i] / tolerance_;
+      samples_.weight[i] = kLeastWeight + std::min(x * x, kMostWeight);
+    }
+  }
+
+  bool iterate(double tangential) {
+    if (!solve(tangential)) return false;
+    project();
+    return true;
+  }
+
+  double trusted_sliding() const noexcept {
+    return std::clamp(kDistrust * worst_ / tolerance_, kSliding, 0.5);
+  }
+
+  /// Keeps the curve if it is within tolerance and has fewer spans than the best so far. Returns
+  /// whether it is within tolerance.
+  bool keep_if_within() {
+    if (!(worst_ <= tolerance_)) return false;
+    worst_ = spline_.measure(samples_);  // what project() gave was an estimate
+    if (!(worst_ <= tolerance_)) return false;
+    if (!has_best_ || spline_.spans() < best_.spans()) {
+      best_ = spline_;
+      best_parameters_ = samples_.u;
+      has_best_ = true;
+    }
+    return true;
+  }
+
+  std::vector<double> span_errors() const {
+    const auto& breaks = spline_.breaks();
+    std::vector<double> errors(breaks.size() - 1, 0.0);
+    std::size_t s = 0;
+    for (std::size_t i = 0; i < sample_count(); ++i) {
+      while (s + 2 < breaks.size() && samples_.u[i] >= breaks[s + 1]) ++s;
+      errors[s] = std::max(errors[s], samples_.error[i]);
+    }
+    return errors;
+  }
+
+  /// span_mass() of what the error has above the noise, relative to what the target has.
+  double mass_above_noise(double error, double target) const noexcept {
+    constexpr double kLeastShare = 0.05;  // of the error: below the noise all errors look alike
+    return span_mass(std::max(error - noise_, kLeastShare * error), target - noise_);
+  }
+
+  void initial_fit();
+  bool hopelessly_dense() const noexcept {
+    constexpr int kSamplesPerSpan = 3;
+    return worst_ > tolerance_ &&
+           static_cast<std::size_t>(spline_.spans()) * kSamplesPerSpan > sample_count();
+  }
+  void set_breaks_at(const std::vector<std::size_t>& sites, const std::vector<double>& parameters);
+  bool split_failing_sites(std::vector<std::size_t>& sites) const;
+  void estimate_noise();
+  std::vector<double> masses_by_shape() const;
+  bool place_by_shape();
+  bool reach_tolerance();
+  bool redistribute_all(bool within);
+  void grow_failing_ranges();
+  bool interpolate();
+  void remove_knots();
+  struct Removal;
+  bool plan_removal(int offset, Removal& removal) const;
+  std::vector<double> join(const Removal& removal) const;
+  bool restore_failing(Removal& removal) const;
+
+  SegmentSamples<kDimension> samples_;
+  std::vector<double> chord_;
+  double closing_leg_;
+  SegmentEnds<kDimension> ends_;
+  double tolerance_;
+  double least_gap_;
+  double worst_ = 0;  // error of spline_, as of the last project() or measure()
+  double noise_ = 0;  // what of an error more knots would not take away
+  Spline spline_;
+  Spline best_;
+  std::vector<double> best_parameters_;
+  bool has_best_ = false;
+};
+
+/// Breakpoints at the parameters of the samples `sites` (ascending; sample_count() means the end of
+/// a periodic segment), as far as they stay apart.
+template <int kDimension>
+void SegmentFitter<kDimension>::set_breaks_at(const std::vector<std::size_t>& sites,
+                                              const std::vector<double>& parameters) {
+  const double end = end_parameter(parameters);
+  std::vector<double> breaks = {parameters.front()};
+  for (const std::size_t site : sites) {
+    if (site == 0 || site >= sample_count()) continue;
+    const double u = parameters[site];
+    if (u >= breaks.back() + least_gap_ && u <= end - least_gap_) breaks.push_back(u);
+  }
+  breaks.push_back(end);
+  // A periodic spline needs a few spans even where samples are fewer.
+  while (static_cast<int>(breaks.size()) <= least_spans()) {
+    const std::vector<double> even(breaks.size() - 1, 1.0);
+    breaks = equidistribute(breaks, even, 2 * static_cast<int>(even.size()), 0.0);
+  }
+  spline_.set_breaks(std::move(breaks), ends_.periodic);
+}
+
+/// Adds a site in the middle of each gap that holds a sample out of tolerance; false where none
+/// can.
+template <int kDimension>
+bool SegmentFitter<kDimension>::split_failing_sites(std::vector<std::size_t>& sites) const {
+  std::vector<std::size_t> next = {sites.front()};
+  for (std::size_t j = 0; j + 1 < sites.size(); ++j) {
+    const std::size_t last = std::min(sites[j + 1], sample_count() - 1);
+    bool fails = false;
+    for (std::size_t i = sites[j]; i <= last; ++i) fails |= samples_.error[i] > tolerance_;
+    if (fails && sites[j + 1] - sites[j] > 1) next.push_back((sites[j] + sites[j + 1]) / 2);
+    next.push_back(sites[j + 1]);
+  }
+  const bool more = next.size() > sites.size();
+  sites = std::move(next);
+  return more;
+}
+
+template <int kDimension>
+void SegmentFitter<kDimension>::initial_fit() {
+  constexpr std::size_t kSamplesPerSpan = 8;
+  constexpr int kMostSplits = 2;
+  const std::size_t last = sample_count() - (ends_.periodic ? 0 : 1);
+  std::vector<std::size_t> sites;
+  for (std::size_t i = 0; i + kSamplesPerSpan / 2 < last; i += kSamplesPerSpan) sites.push_back(i);
+  if (sites.empty()) sites.push_back(0);
+  sites.push_back(last);
+  const auto parameters = samples_.u;
+  for (int split = 0;; ++split) {
+    set_breaks_at(sites, parameters);
+    samples_.u = parameters;
+    if (!solve(1.0)) {
+      worst_ = std::numeric_limits<double>::infinity();
+      return;
+    }
+    project();
+    constexpr double kGoodEnough = 2;  // sliding takes care of the rest
+    if (split == kMostSplits || worst_ <= kGoodEnough * tolerance_) break;
+    if (!split_failing_sites(sites)) break;
+  }
+  estimate_noise();
+  keep_if_within();
+}
+
+template <int kDimension>
+void SegmentFitter<kDimension>::estimate_noise() {
+  constexpr double kDeviations = 2.5;  // a span's largest error is some 2 or 3 of them
+  constexpr double kMostShare = 0.5;   // of the tolerance; above, one fits noise in any case
+  double sum = 0;
+  for (const double e : samples_.error) sum += e * e;
+  const double rms = std::sqrt(sum / static_cast<double>(sample_count()));
+  noise_ = std::min(kDeviations * rms, kMostShare * tolerance_);
+}
+
+/// How many spans each span of the initial fit is worth, from the fourth derivative across the
+/// curve (a sample may slide along it), which the jumps of the third one tell, and from the
+/// turning.
+template <int kDimension>
+std::vector<double> SegmentFitter<kDimension>::masses_by_shape() const {
+  // Fitting error of a cubic over a span of length h is about h^4 |C''''| / 100 (between the 1/384
+  // of the best interpolant and what the end spans do).
+  constexpr double kErrorQuotient = 100;
+  // Turning that one span takes at most, radians: about two full circles of a gentle curve.
+  constexpr double kMostTurning = 6;
+  constexpr double kLeastMass = 1e-3;
+  const auto& breaks = spline_.breaks();
+  const auto count = static_cast<std::size_t>(spline_.spans());
+  std::vector<double> fourth(count + 1, 0.0);  // |C''''| across the curve, at the breakpoints
+  for (std::size_t j = 1; j < count; ++j) {
+    const auto s = static_cast<int>(j);
+    Point jump = spline_.third_derivative(s) - spline_.third_derivative(s - 1);
+    const Point tangent = spline_.tangent_at_begin(s);
+    jump -= jump.dot(tangent) * tangent;
+    fourth[j] = jump.norm() / (0.5 * (breaks[j + 1] - breaks[j - 1]));
+  }
+  if (count > 1) {
+    fourth[0] = fourth[1];
+    fourth[count] = fourth[count - 1];
+  }
+  std::vector<double> mass(count, kLeastMass);
+  std::size_t s = 0;
+  for (std::size_t i = 0; i + 1 < sample_count(); ++i) {
+    while (s + 1 < count && samples_.u[i] >= breaks[s + 1]) ++s;
+    const double cosine = samples_.tangent[i].dot(samples_.tangent[i + 1]);
+    mass[s] += std::acos(std::clamp(cosine, -1.0, 1.0)) / kMostTurning;
+  }
+  for (std::size_t j = 0; j < count; ++j) {
+    const double h = breaks[j + 1] - breaks[j];
+    const double error = 0.5 * std::max(fourth[j], fourth[j + 1]) * h * h * h * h / kErrorQuotient;
+    mass[j] += span_mass(error, tolerance_ - noise_);
+  }
+  return mass;
+}
+
+template <int kDimension>
+bool SegmentFitter<kDimension>::place_by_shape() {
+  constexpr double kRoundingDown = 0.3;  // of the last, partial span
+  const auto mass = masses_by_shape();
+  const double total = std::accumulate(mass.begin(), mass.end(), 0.0);
+  const double wanted = std::ceil(total - kRoundingDown);
+  if (!(wanted < spline_.spans())) return true;
+  const int count = std::max(least_spans(), static_cast<int>(wanted));
+  spline_.set_breaks(equidistribute(spline_.breaks(), mass, count, least_gap_), ends_.periodic);
+  return iterate(kCautious) && iterate(trusted_sliding());
+}
+
+template <int kDimension>
+bool SegmentFitter<kDimension>::reach_tolerance() {
+  constexpr int kRedistributions = 4;
+  constexpr int kMostRounds = 12;
+  constexpr double kNearly = 2;      // in tolerances: near enough that iterating may do
+  constexpr double kProgress = 0.9;  // an iteration that gains less is not worth repeating
+  double last = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kMostRounds; ++round) {
+    const bool within = keep_if_within();
+    if (round < kRedistributions) {
+      if (!redistribute_all(within)) return true;
+      if (!iterate(kSliding)) return false;
+      continue;
+    }
+    if (within) return true;
+    const bool converging = worst_ < kNearly * tolerance_ && worst_ < kProgress * last;
+    last = worst_;
+    if (!converging) grow_failing_ranges();
+    if (!iterate(converging ? trusted_sliding() : kSliding)) return false;
+  }
+  return keep_if_within();
+}
+
+/// Spreads all knots anew, by measured errors. False if the curve is within tolerance and its knots
+/// would not get fewer.
+template <int kDimension>
+bool SegmentFitter<kDimension>::redistribute_all(bool within) {
+  constexpr double kTarget = 0.8;          // of the tolerance: what spans are to come to
+  constexpr double kNeighbourShare = 0.5;  // a span's error speaks for its neighbours too
+  constexpr double kLeastMass = 0.8;       // damping
+  constexpr double kMostMass = 3;
+  constexpr double kRoundingDown = 0.3;
+  const auto errors = span_errors();
+  std::vector<double> mass(errors.size());
+  for (std::size_t j = 0; j < errors.size(); ++j) {
+    double e = errors[j];
+    if (j > 0) e = std::max(e, kNeighbourShare * errors[j - 1]);
+    if (j + 1 < errors.size()) e = std::max(e, kNeighbourShare * errors[j + 1]);
+    mass[j] = std::clamp(mass_above_noise(e, kTarget * tolerance_), kLeastMass, kMostMass);
+  }
+  const double total = std::accumulate(mass.begin(), mass.end(), 0.0);
+  const int count = std::max(least_spans(), static_cast<int>(std::ceil(total - kRoundingDown)));
+  if (within && count >= spline_.spans()) return false;
+  spline_.set_breaks(equidistribute(spline_.breaks(), mass, count, least_gap_), ends_.periodic);
+  return true;
+}
+
+/// Around spans out of tolerance, spreads knots anew with at least one more.
+template <int kDimension>
+void SegmentFitter<kDimension>::grow_failing_ranges() {
+  constexpr int kReach = 2;
+  constexpr double kTarget = 0.8;
+  constexpr double kLeastMass = 0.5;
+  constexpr double kMostMass = 3;
+  const std::vector<double> old = spline_.breaks();
+  const auto errors = span_errors();
+  std::vector<double> breaks = {old.front()};
+  int done = 0;
+  const auto copy_until = [&](int end) {
+    for (; done < end; ++done) breaks.push_back(old[static_cast<std::size_t>(done) + 1]);
+  };
+  for (const SpanRange range : failing_ranges(errors, tolerance_, kReach)) {
+    copy_until(range.begin);
+    const auto begin = static_cast<std::size_t>(range.begin);
+    const auto size = static_cast<std::size_t>(range.end - range.begin);
+    std::vector<double> mass;
+    int failing = 0;
+    for (std::size_t j = begin; j < begin + size; ++j) {
+      mass.push_back(
+          std::clamp(mass_above_noise(errors[j], kTarget * tolerance_), kLeastMass, kMostMass));
+      failing += errors[j] > tolerance_ ? 1 : 0;
+    }
+    const double total = std::accumulate(mass.begin(), mass.end(), 0.0);
+    const int now = static_cast<int>(size);
+    const int count = std::clamp(static_cast<int>(std::ceil(total)), now + 1, now + 2 * failing);
+    const auto part = equidistribute({old.data() + begin, size + 1}, mass, count, least_gap_);
+    breaks.insert(breaks.end(), part.begin() + 1, part.end());
+    done = range.end;
+  }
+  copy_until(static_cast<int>(errors.size()));
+  spline_.set_breaks(std::move(breaks), ends_.periodic);
+}
+
+template <int kDimension>
+bool SegmentFitter<kDimension>::interpolate() {
+  constexpr std::size_t kSamplesPerSpan = 4;
+  const std::size_t last = sample_count() - (ends_.periodic ? 0 : 1);
+  samples_.u = chord_;
+  std::fill(samples_.weight.begin(), samples_.weight.end(), 1.0);
+  std::vector<std::size_t> sites;
+  for (std::size_t i = 0; i < last; i += kSamplesPerSpan) sites.push_back(i);
+  sites.push_back(last);
+  for (;;) {  // each round adds sites, of which there are at most as many as samples
+    set_breaks_at(sites, chord_);
+    if (!solve(1.0)) return false;
+    worst_ = spline_.measure(samples_);
+    if (keep_if_within()) return true;
+    if (split_failing_sites(sites)) continue;
+    if (sites.size() > last) return false;
+    sites.resize(last + 1);
+    std::iota(sites.begin(), sites.end(), std::size_t{0});
+  }
+}
+
+/// A round of remove_knots(): windows of the best curve's spans, each with its new breakpoints.
+template <int kDimension>
+struct SegmentFitter<kDimension>::Removal {
+  struct Window {
+    SpanRange range;
+    std::vector<double> breaks;  // ends included
+    bool shortened = false;
+  };
+  std::vector<double> old;
+  std::vector<Window> windows;
+};
+
+/// Gives every window that can afford it one span less. False if none can.
+template <int kDimension>
+bool SegmentFitter<kDimension>::plan_removal(int offset, Removal& removal) const {
+  constexpr int kWidth = 6;
+  constexpr double kLeastMass = 0.3;
+  constexpr double kMostMass = 3;
+  // Mass that one of the remaining spans may hold. On few spans a failure costs little: try more.
+  constexpr double kAffordable = 1.0;
+  constexpr double kFewAffordable = 1.4;
+  constexpr int kFewSpans = 3;
+  const auto errors = span_errors();
+  const int spans = spline_.spans();
+  const double affordable = spans <= kFewSpans ? kFewAffordable : kAffordable;
+  removal.old = spline_.breaks();
+  bool any = false;
+  int left = spans;
+  for (const SpanRange range : windows(spans, kWidth, offset)) {
+    const auto begin = static_cast<std::size_t>(range.begin);
+    const auto size = static_cast<std::size_t>(range.end - range.begin);
+    std::vector<double> mass;
+    for (std::size_t j = begin; j < begin + size; ++j) {
+      mass.push_back(std::clamp(mass_above_noise(errors[j], tolerance_), kLeastMass, kMostMass));
+    }
+    const double total = std::accumulate(mass.begin(), mass.end(), 0.0);
+    const std::span<const double> old(removal.old.data() + begin, size + 1);
+    typename Removal::Window window{range, {old.begin(), old.end()}, false};
+    if (size >= 2 && left > least_spans() && total <= affordable * static_cast<double>(size - 1)) {
+      window.breaks = equidistribute(old, mass, static_cast<int>(size) - 1, least_gap_);
+      window.shortened = any = true;
+      --left;
+    }
+    removal.windows.push_back(std::move(window));
+  }
+  return any;
+}
+
+template <int kDimension>
+std::vector<double> SegmentFitter<kDimension>::join(const Removal& removal) const {
+  std::vector<double> breaks = {removal.old.front()};
+  for (const auto& window : removal.windows) {
+    breaks.insert(breaks.end(), window.breaks.begin() + 1, window.breaks.end());
+  }
+  return breaks;
+}
+
+/// Gives shortened windows that hold a sample out of tolerance their old breakpoints back. Returns
+/// whether some window stays shortened.
+template <int kDimension>
+bool SegmentFitter<kDimension>::restore_failing(Removal& removal) const {
+  std::size_t i = 0;
+  bool any = false;
+  for (auto& window : removal.windows) {
+    const double end = removal.old[static_cast<std::size_t>(window.range.end)];
+    const bool last = &window == &removal.windows.back();
+    bool fails = false;
+    for (; i < sample_count() && (last || samples_.u[i] < end); ++i) {
+      fails |= samples_.error[i] > tolerance_;
+    }
+    if (window.shortened && fails) {
+      window.breaks.assign(removal.old.begin() + window.range.begin,
+                           removal.old.begin() + window.range.end + 1);
+      window.shortened = false;
+    }
+    any |= window.shortened;
+  }
+  return any;
+}
+
+template <int kDimension>
+void SegmentFitter<kDimension>::remove_knots() {
+  constexpr int kRounds = 4;
+  constexpr int kOffset = 3;       // windows straddle the borders of those of the round before
+  constexpr double kNearly = 1.3;  // in tolerances: one more iteration may do
+  for (int round = 0; round < kRounds; ++round) {
+    spline_ = best_;
+    samples_.u = best_parameters_;
+    project();
+    Removal removal;
+    if (!plan_removal(round * kOffset, removal)) continue;
+    spline_.set_breaks(join(removal), ends_.periodic);
+    if (!iterate(kSliding) || !iterate(trusted_sliding())) return;
+    if (keep_if_within()) continue;
+    if (worst_ < kNearly * tolerance_) {
+      if (!iterate(kSliding)) return;
+      if (keep_if_within()) continue;
+    }
+    if (!restore_failing(removal)) continue;
+    spline_.set_breaks(join(removal), ends_.periodic);
+    if (!iterate(kSliding)) return;
+    if (keep_if_within()) continue;
+    if (!iterate(kSliding)) return;
+    keep_if_within();
+  }
+}
+
+}  // namespace limn::fit_detail
