@@ -1,0 +1,17 @@
+#pragma once
+
+#include <functional>
+
+#include "tests/bench/row.hpp"
+
+namespace limn::bench {
+
+/// Takes the rows of an area as they are measured.
+using RowSink = std::function<void(const Row&)>;
+
+/// Each of these measures one area.
+void decode_area(const RowSink& sink);
+void trace_area(const RowSink& sink);
+void fit_area(const RowSink& sink);
+
+}  // namespace limn::bench
