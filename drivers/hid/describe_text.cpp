@@ -12,7 +12,7 @@ namespace {
 constexpr double kMmPerInch = 25.4;
 constexpr int kDigits = 6;
 // A longer cell does not widen its column for all rows.
-constexpr std::size_t kWidestCell = 40;
+constexpr std::size_t kWidestCell = 72;
 
 using Cells = std::vector<std::string>;
 

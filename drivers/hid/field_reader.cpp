@@ -23,14 +23,6 @@ std::uint64_t gather(const std::uint8_t* at, std::uint32_t shift, std::uint32_t 
 
 }  // namespace
 
-FieldReader::Access FieldReader::choose_access(std::uint32_t shift, std::uint32_t bit_size,
-                                               bool is_signed) noexcept {
-  if (bit_size == 1 && !is_signed) return Access::kBit;
-  if (shift == 0 && bit_size == 8) return is_signed ? Access::kS8 : Access::kU8;
-  if (shift == 0 && bit_size == 16) return is_signed ? Access::kS16 : Access::kU16;
-  return Access::kBits;
-}
-
 FieldReader FieldReader::of_bits(std::uint32_t bit_offset, std::uint32_t bit_size,
                                  bool is_signed) noexcept {
   LIMN_EXPECT(bit_size >= 1 && bit_size <= kMaxReadableBits);
@@ -39,9 +31,9 @@ FieldReader FieldReader::of_bits(std::uint32_t bit_offset, std::uint32_t bit_siz
   reader.shift_ = static_cast<std::uint8_t>(bit_offset % 8);
   reader.bit_size_ = static_cast<std::uint8_t>(bit_size);
   reader.end_byte_ = (std::size_t{bit_offset} + bit_size + 7) / 8;
-  reader.is_signed_ = is_signed;
+  if (is_signed && bit_size < 64) reader.sign_ = std::uint64_t{1} << (bit_size - 1);
   reader.logical_ = {0, -1};  // none
-  reader.access_ = choose_access(reader.shift_, bit_size, is_signed);
+  reader.access_ = reader.shift_ + bit_size <= 64 ? Access::kWord : Access::kBits;
   return reader;
 }
 
@@ -63,12 +55,6 @@ FieldReader FieldReader::of_selection(const Field& field, std::int64_t value) no
   reader.null_state_ = false;
   reader.logical_ = {0, 1};
   return reader;
-}
-
-std::int64_t FieldReader::with_sign(std::uint64_t bits) const noexcept {
-  if (!is_signed_ || bit_size_ == 64) return static_cast<std::int64_t>(bits);
-  const std::uint64_t sign = std::uint64_t{1} << (bit_size_ - 1);
-  return static_cast<std::int64_t>((bits ^ sign) - sign);
 }
 
 std::optional<std::int64_t> FieldReader::read_selection(

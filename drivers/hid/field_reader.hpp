@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <span>
@@ -41,29 +44,12 @@ class FieldReader {
   /// An unsigned 64-bit element above 2^63-1 comes out negative: use read_bits for serial numbers.
   std::optional<std::int64_t> read(std::span<const std::uint8_t> report) const noexcept {
     if (report.size() < end_byte_) return std::nullopt;
-    const std::uint8_t* const at = report.data() + first_byte_;
-    std::int64_t value = 0;
-    switch (access_) {
-      case Access::kBit:
-        value = (*at >> shift_) & 1;
-        break;
-      case Access::kU8:
-        value = *at;
-        break;
-      case Access::kS8:
-        value = static_cast<std::int8_t>(*at);
-        break;
-      case Access::kU16:
-        value = at[0] | at[1] << 8;
-        break;
-      case Access::kS16:
-        value = static_cast<std::int16_t>(at[0] | at[1] << 8);
-        break;
-      case Access::kAbsent:
-      case Access::kBits:
-      case Access::kSelection:
-        return read_slowly(report);
-    }
+    if (access_ != Access::kWord || report.size() < kWordBytes) return read_slowly(report);
+    // One load without branches: the eight bytes from the element's first on, or the report's last
+    // eight, which then hold all of the element.
+    const std::size_t start = std::min<std::size_t>(first_byte_, report.size() - kWordBytes);
+    const std::uint64_t word = load_word(report.data() + start) >> (bit_offset() - 8 * start);
+    const std::int64_t value = with_sign(word & (~std::uint64_t{0} >> (64 - bit_size_)));
     if (null_state_ && !logical_.contains(value)) return std::nullopt;
     return value;
   }
@@ -84,14 +70,30 @@ class FieldReader {
   constexpr std::uint32_t bit_size() const noexcept { return bit_size_; }
 
  private:
-  enum class Access : std::uint8_t { kAbsent, kBit, kU8, kS8, kU16, kS16, kBits, kSelection };
+  enum class Access : std::uint8_t { kAbsent, kWord, kBits, kSelection };
 
-  static Access choose_access(std::uint32_t shift, std::uint32_t bit_size, bool is_signed) noexcept;
+  static constexpr std::size_t kWordBytes = 8;
+
+  /// Little-endian.
+  static std::uint64_t load_word(const std::uint8_t* at) noexcept {
+    std::uint64_t word = 0;
+    if constexpr (std::endian::native == std::endian::little) {
+      std::memcpy(&word, at, kWordBytes);
+    } else {
+      for (std::size_t i = kWordBytes; i-- > 0;) word = word << 8 | at[i];
+    }
+    return word;
+  }
+
+  std::int64_t with_sign(std::uint64_t bits) const noexcept {
+    return static_cast<std::int64_t>((bits ^ sign_) - sign_);
+  }
+
   std::optional<std::int64_t> read_slowly(std::span<const std::uint8_t> report) const noexcept;
-  std::int64_t with_sign(std::uint64_t bits) const noexcept;
   std::optional<std::int64_t> read_selection(std::span<const std::uint8_t> report) const noexcept;
 
   Range logical_;
+  std::uint64_t sign_ = 0;     // the sign bit; 0 where unsigned, or where all 64 bits are used
   std::int64_t selected_ = 0;  // kSelection: the index looked for
   // No report is as long as an absent reader asks for.
   std::size_t end_byte_ = std::numeric_limits<std::size_t>::max();
@@ -100,7 +102,6 @@ class FieldReader {
   std::uint8_t shift_ = 0;   // of the lowest bit within first_byte_
   std::uint8_t bit_size_ = 0;
   Access access_ = Access::kAbsent;
-  bool is_signed_ = false;
   bool null_state_ = false;
 };
 
