@@ -123,11 +123,8 @@ std::vector<PenStroke> star() {
   constexpr double kRadiusMm = 50;
   const Placement place{{105, 79}, 1};
   PenStroke stroke{{}, PenEnd::kTip, 0.9, 0.5};
-  for (int i = 0; i < 5; ++i) {
-    const auto corner = [](int k) { return on_circle(kRadiusMm, kPi * (0.5 + 0.8 * k)); };
-    stroke.pieces.push_back(line(place, corner(i), corner(i + 1)));
-  }
-  stroke.pieces.back().back() = stroke.pieces.front().front();
+  const auto corner = [](int i) { return on_circle(kRadiusMm, kPi * (0.5 + 0.8 * (i % 5))); };
+  for (int i = 0; i < 5; ++i) stroke.pieces.push_back(line(place, corner(i), corner(i + 1)));
   return {stroke};
 }
 

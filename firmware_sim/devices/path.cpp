@@ -15,13 +15,15 @@ Path through(const Placement& place, std::initializer_list<PlanePoint> points) {
 Path line(const Placement& place, PlanePoint from, PlanePoint to) {
   constexpr double kStepMm = 8;
   const PlanePoint start = place(from);
-  const PlanePoint across = place(to) - start;
+  const PlanePoint end = place(to);
+  const PlanePoint across = end - start;
   const double length_mm = std::sqrt(across.x * across.x + across.y * across.y);
   const int steps = std::max(1, static_cast<int>(length_mm / kStepMm));
   Path path;
-  for (int i = 0; i <= steps; ++i) {
+  for (int i = 0; i < steps; ++i) {
     path.push_back(start + (static_cast<double>(i) / steps) * across);
   }
+  path.push_back(end);  // to the bit, so that pieces join
   return path;
 }
 

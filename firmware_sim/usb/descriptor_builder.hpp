@@ -40,7 +40,7 @@ class ReportId {
 /// Wire layout [HID 1.11, 6.2.2.2]: a prefix byte (tag << 4 | type << 2 | size code), then 0, 1, 2
 /// or 4 data bytes, little-endian. Each item is the shortest that is read the same whichever way a
 /// reader takes the sign: ranges are written as signed numbers, so 255 has two data bytes and 65535
-/// four. Global items are written only where they change; all are 0 at the start.
+/// four. Global items are written only where they change; physical range and unit are 0 at first.
 /// Memory: a fixed array inside the object; nothing of it is left in a program that keeps only
 /// descriptor_bytes().
 class DescriptorBuilder {
@@ -49,6 +49,7 @@ class DescriptorBuilder {
 
   constexpr DescriptorBuilder& collection(CollectionKind kind, Usage what) noexcept {
     usage(what);
+    if (usages_ > 1) sound_ = false;
     put(Prefix::kCollection, static_cast<std::uint8_t>(kind), 1);
     ++open_collections_;
     end_main_item();
@@ -60,7 +61,7 @@ class DescriptorBuilder {
   }
 
   constexpr DescriptorBuilder& end_collection() noexcept {
-    if (open_collections_ == 0) sound_ = false;
+    if (open_collections_ == 0 || usages_ > 0) sound_ = false;
     --open_collections_;
     put(Prefix::kEndCollection, 0, 0);
     end_main_item();
@@ -95,6 +96,9 @@ class DescriptorBuilder {
 
   constexpr DescriptorBuilder& logical(Range range) noexcept {
     if (range.minimum >= range.maximum) sound_ = false;
+    // The specification gives no default for it, so the first one is told even where it is 0.
+    if (!told_logical_ && range.minimum == 0) put_signed(Prefix::kLogicalMinimum, 0);
+    told_logical_ = true;
     put_range(Prefix::kLogicalMinimum, Prefix::kLogicalMaximum, logical_, range);
     return *this;
   }
@@ -166,7 +170,7 @@ class DescriptorBuilder {
   }
 
   /// Whether the descriptor stands as it is: every collection closed, every report of whole bytes,
-  /// nothing left over, and none of the errors named above.
+  /// no usage left over, and none of the errors named above.
   constexpr bool is_well_formed() const noexcept {
     for (const std::size_t bits : report_bits_) {
       if (bits % 8 != 0) return false;
@@ -248,6 +252,7 @@ class DescriptorBuilder {
   unsigned usages_ = 0;  // waiting for their main item
   UsagePage page_ = UsagePage::kNone;
   Range logical_;
+  bool told_logical_ = false;
   Range physical_;
   Unit unit_ = Unit::kNone;
   UnitExponent exponent_ = 0;
