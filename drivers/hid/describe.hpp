@@ -65,7 +65,7 @@ struct Description {
   bool complete = true;  ///< false where kMaxDescriptionRows left rows out
 };
 
-/// Bounds the size of any Description; real ones have up to 800 rows.
+/// Bounds the size of any Description; real ones have up to 139 rows.
 inline constexpr std::size_t kMaxDescriptionRows = 10000;
 
 /// Explains `descriptor`.

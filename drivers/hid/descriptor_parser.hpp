@@ -112,8 +112,8 @@ struct DescriptorNote {
   std::string what;
 };
 
-/// Limits that bound time and memory for any bytes. Real descriptors reach 2,580 bytes, 4 levels
-/// and reports of 7,487 bytes.
+/// Limits that bound time and memory for any bytes. Real descriptors reach 2,580 bytes, 121 fields,
+/// 60 collections in 4 levels, and reports of 7,488 bytes.
 inline constexpr std::size_t kMaxDescriptorBytes = 65535;  ///< USB gives the length 16 bits
 inline constexpr std::size_t kMaxCollections = 4096;
 inline constexpr std::size_t kMaxCollectionDepth = 64;

@@ -92,18 +92,18 @@ struct PenLayout {
 /// mice, and the fingers of touch screens and pads.
 ///
 /// One collection that the tables call Stylus, Pen, Puck or Finger is one transducer (a Stylus in a
-/// touch screen with nothing but a contact is a finger, too); where a
-/// top-level collection holds none of these, it is one itself: of fingers if it is a touch screen
-/// or touch pad, else a pen if it has a tip pressure (real pens pose as mice or on vendor pages) or
-/// is a digitizer with a tip switch or in-range bit. Usages directly in the top-level collection
-/// (scan time, contact count) belong to each transducer of their report. At most kMaxTransducers.
+/// touch screen with nothing but a contact is a finger, too). Where a top-level collection holds
+/// none of these, it is one itself: of fingers if it is a touch screen or touch pad, else a pen if
+/// it has a tip pressure (real pens pose as mice or on vendor pages) or is a digitizer with a tip
+/// switch or in-range bit. Usages directly in the top-level collection (scan time, contact count)
+/// belong to each transducer of their report. At most kMaxTransducers.
 std::vector<PenLayout> transducer_layouts(const ReportDescriptor& descriptor);
 
 /// The pens and tablet mice among them: what limn decodes to pen samples. Those on standard pages
 /// come before those on vendor pages, these before those that pose as mice.
 std::vector<PenLayout> pen_layouts(const ReportDescriptor& descriptor);
 
-/// Real descriptors have up to 20 (fingers in two reports).
+/// Real descriptors have up to 16.
 inline constexpr std::size_t kMaxTransducers = 256;
 
 }  // namespace limn::hid
