@@ -220,15 +220,20 @@ TEST_P(EachDrawing, JitterIsWhiteAndTwoHundredthsOfAMillimetre) {
 
 TEST_P(EachDrawing, CornersAreReachedAndRestedAt) {
   constexpr double kWithinJitter = 4 * PenSession::kJitterMm;
+  const Hand hand(drawing_);
   for (const PenStroke& stroke : drawing_.strokes) {
     for (std::size_t i = 1; i < stroke.pieces.size(); ++i) {
       const PlanePoint corner = stroke.pieces[i].front();
       ASSERT_EQ(corner, stroke.pieces[i - 1].back()) << "pieces join";
-      const auto there = std::count_if(seen_.begin(), seen_.end(), [&](const Seen& now) {
-        return now.touching() &&
-               std::hypot(now.x_mm - corner.x, now.y_mm - corner.y) < kWithinJitter;
-      });
-      EXPECT_GE(there, 10) << "60 ms at " << corner.x << ", " << corner.y;
+      int resting = 0;
+      for (const Seen& now : seen_) {
+        const PenPose ideal = hand.pose(now.time);
+        if (!now.touching() || ideal.x_mm != corner.x || ideal.y_mm != corner.y) continue;
+        ++resting;
+        ASSERT_NEAR(now.x_mm, corner.x, kWithinJitter);
+        ASSERT_NEAR(now.y_mm, corner.y, kWithinJitter);
+      }
+      EXPECT_GE(resting, 11) << "60 ms at " << corner.x << ", " << corner.y;
     }
   }
 }
