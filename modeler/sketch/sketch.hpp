@@ -64,8 +64,8 @@ struct SketchOptions {
 /// Errors: those of fit_curve(), which name the sample.
 Expected<SketchStroke> sketch_stroke(const Stroke& stroke, const SketchOptions& options);
 
-/// Arc length by Gauss-Legendre quadrature, 8 points a span; a smooth span is exact to about 1e-10
-/// of its length, one with a cusp to about 1e-2.
+/// Arc length to about 1e-9 of itself (1e-5 of a span that has a cusp inside), by adaptive
+/// Gauss-Legendre quadrature of 8 points.
 double arc_length(const BsplineCurve<2>& curve);
 
 }  // namespace limn

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 
 /// Allowed error of the simplified width, in parts of the range from thinnest to widest ink.
-constexpr double kWidthError = 0.03;
+constexpr double kWidthError = 0.05;
 
 /// Each halving of a span; more are never needed, for bars end the recursion at a fraction of the
 /// width, but input may hold spans a million times longer than the ink is wide.

@@ -95,9 +95,9 @@ double paper_scale(double longer_mm) {
 }
 
 void choose_widths(double leg, double extent, Page& page) {
-  page.ink_width = std::clamp(0.35 * leg, extent / 500, extent / 130);
+  page.ink_width = std::clamp(0.25 * leg, extent / 500, extent / 140);
   page.thinnest_ink = page.ink_width / 5;
-  page.marker_width = std::clamp(0.25 * leg, extent / 800, extent / 130);
+  page.marker_width = std::clamp(0.18 * leg, extent / 800, extent / 140);
   page.polygon_width = page.marker_width / 4;
 }
 
@@ -127,7 +127,10 @@ std::string picture_caption(const Sketch& sketch, double paper_scale) {
                     counted(control_points, "control point") + ", tolerance " +
                     text_of_digits(sketch.tolerance_mm, 6) + " mm";
   if (!sketch.strokes.empty()) {
-    out += ", largest deviation " + text_of_digits(deviation, 3) + " mm";
+    // What is far below the tolerance is rounding, and its digits say nothing.
+    const double least = 0.01 * sketch.tolerance_mm;
+    out += ", largest deviation " + std::string(deviation < least ? "below " : "") +
+           text_of_digits(std::max(deviation, least), 3) + " mm";
   }
   if (paper_scale != 1) out += ", drawn 1:" + text_of_digits(1 / paper_scale, 12);
   return out;

@@ -196,8 +196,8 @@ TEST(InkWidth, StaysNearTheProfileAndWithinIt) {
   for (int i = 0; i <= 200; ++i) pressure.push_back({0.01 * i, 0.5 + 0.4 * std::sin(0.05 * i)});
   const InkWidth width(pressure, 1.0, 0.2, 1.2);
   for (const PressureAt& p : pressure) {
-    // The simplified polyline is within 0.03 of the range; the cubic through it a little off that.
-    EXPECT_NEAR(width.at(p.u).width, 0.2 + p.pressure, 0.06);
+    // The simplified polyline is within 0.05 of the range; the cubic through it a little off that.
+    EXPECT_NEAR(width.at(p.u).width, 0.2 + p.pressure, 0.08);
     EXPECT_LE(width.at(p.u).width, 1.1 + 1e-12);
     EXPECT_GE(width.at(p.u).width, 0.3 - 1e-12);
   }

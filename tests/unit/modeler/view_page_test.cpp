@@ -109,6 +109,9 @@ TEST(Caption, CountsAndMeasures) {
   EXPECT_EQ(picture_caption(dot, 1.0 / 500'000),
             "1 stroke, 1 control point, tolerance 0.02 mm, largest deviation 0.0123 mm, "
             "drawn 1:500000");
+  dot.strokes[0].deviation_max_mm = 3e-10;
+  EXPECT_EQ(picture_caption(dot, 1),
+            "1 stroke, 1 control point, tolerance 0.02 mm, largest deviation below 0.0002 mm");
 }
 
 }  // namespace
