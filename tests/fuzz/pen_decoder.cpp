@@ -1,0 +1,89 @@
+// Any device, any bytes: a decoder of each table row (or of none) with any report descriptor.
+//
+//   u8       0: no descriptor
+//   u8       family, modulo their number + 1; the one past the end: a stranger to the tables
+//   u8       which of the family's rows
+//   u16, ..  length and bytes of the descriptor, where there is one
+//   then reports: u8 length, u8 milliseconds since the last, bytes (numbers: low byte first)
+
+#include "drivers/devices/pen_decoder.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "input/stroke/stroke_sampler.hpp"
+#include "tests/fuzz/pen_laws.hpp"
+
+namespace {
+
+using namespace limn;
+
+class Input {
+ public:
+  Input(const std::uint8_t* data, std::size_t size) : rest_(data, size) {}
+  bool empty() const { return rest_.empty(); }
+  std::uint8_t byte() {
+    const auto taken = take(1);
+    return taken.empty() ? std::uint8_t{0} : taken[0];
+  }
+  std::span<const std::uint8_t> take(std::size_t count) {
+    const auto taken = rest_.first(std::min(count, rest_.size()));
+    rest_ = rest_.subspan(taken.size());
+    return taken;
+  }
+
+ private:
+  std::span<const std::uint8_t> rest_;
+};
+
+PenSpec row_of(PenFamily family, std::size_t choice) {
+  const auto of_family = [family](const PenSpec& spec) { return spec.family == family; };
+  const auto rows = pen_specs();
+  auto number =
+      choice % static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), of_family));
+  auto row = std::find_if(rows.begin(), rows.end(), of_family);
+  for (; number > 0; --number) row = std::find_if(row + 1, rows.end(), of_family);
+  return *row;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Input input(data, size);
+  const bool has_descriptor = input.byte() != 0;
+  const unsigned family = input.byte() % (kPenFamilyCount + 1U);
+  const bool stranger = family == kPenFamilyCount;
+  const std::size_t choice = input.byte();
+  const PenSpec spec = stranger ? PenSpec{} : row_of(static_cast<PenFamily>(family), choice);
+  std::span<const std::uint8_t> descriptor;
+  if (has_descriptor) {
+    const std::size_t length_low = input.byte();
+    descriptor = input.take(length_low | static_cast<std::size_t>(input.byte()) << 8);
+  }
+  auto decoder = PenDecoder::make(spec.vendor, spec.product, descriptor);
+  if (!decoder) {
+    fuzz::demand(stranger, "a device of the tables needs no descriptor");
+    return 0;
+  }
+
+  fuzz::PenLaws laws;
+  StrokeSampler strokes({.max_points = 64});
+  const auto sink = [](Stroke& stroke) {
+    fuzz::demand(!stroke.points.empty() && stroke.points.size() <= 64, "strokes keep their limit");
+  };
+  Timestamp time{};
+  while (!input.empty()) {
+    const std::size_t length = input.byte();
+    time += std::chrono::milliseconds(input.byte());
+    const auto decoded = decoder->decode(Report{1, time, input.take(length)});
+    fuzz::demand(decoded.kind == ReportClass::kPen || decoded.samples.empty(),
+                 "samples come from pen reports");
+    laws.check(decoded.samples);
+    for (const PenSample& sample : decoded.samples) strokes.push(sample, sink);
+  }
+  laws.check(decoder->disconnect(1, time));
+  strokes.finish(sink);
+  return 0;
+}
