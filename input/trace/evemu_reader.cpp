@@ -26,9 +26,7 @@ bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z')
 EvemuReader::EvemuReader(std::unique_ptr<ByteSource> bytes, TraceOptions options)
     : LineTraceReader(std::move(bytes), options.salvage),
       devices_(std::move(options.supplied)),
-      device_(*devices_.find_or_add(0)) {
-  frame_.reserve(kMaxFrameEvents);
-}
+      device_(*devices_.find_or_add(0)) {}
 
 Expected<void> EvemuReader::take(const Line& line) {
   const std::string_view text = line.text;

@@ -153,6 +153,7 @@ Expected<std::size_t> HidRecorderReader::take_bytes(std::string_view rest, std::
                        std::to_string(limit) + " bytes are possible",
                    ErrorCode::kLimit);
   }
+  if (bytes_.size() < *length) bytes_.resize(*length);
   const auto read = text::parse_hex_bytes(rest, bytes_);
   if (!read.bad.empty()) return damaged(text::quoted(read.bad) + " is no two-digit byte");
   if (read.count != *length) {

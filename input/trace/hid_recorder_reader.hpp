@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "input/trace/device_table.hpp"
 #include "input/trace/line_trace_reader.hpp"
@@ -37,7 +37,7 @@ class HidRecorderReader final : public LineTraceReader {
   DeviceTable devices_;
   TrackedDevice* device_ = nullptr;  // the selected one; null before the first line that needs one
   bool device_lost_ = false;         // salvage: a skipped line may have selected another device
-  std::array<std::uint8_t, kMaxDescriptorBytes> bytes_{};
+  std::vector<std::uint8_t> bytes_;  // as many as the largest report or descriptor so far
 };
 
 }  // namespace limn

@@ -2,20 +2,13 @@
 
 #include <algorithm>
 #include <cstring>
-#include <utility>
-
-#include "input/trace/trace.hpp"
 
 namespace limn {
 namespace {
 
-constexpr std::size_t kBlockBytes = std::size_t{128} * 1024;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace
-
-LineSource::LineSource(std::unique_ptr<ByteSource> bytes)
-    : bytes_(std::move(bytes)), buffer_(kMaxLineBytes + kBlockBytes) {}
 
 Expected<std::optional<Line>> LineSource::next() {
   if (in_long_line_) {
@@ -74,15 +67,16 @@ Expected<void> LineSource::discard_line() {
   }
 }
 
-/// Reads some more behind what is there; false at the end. The buffer is never full here: no more
-/// than kMaxLineBytes are left over when more is wanted.
+/// Reads some more behind what is there; false at the end. There is room: no more than
+/// kMaxLineBytes are left over when more is wanted.
 Expected<bool> LineSource::refill() {
   if (at_end_) return false;
-  if (buffer_.size() - end_ < kBlockBytes) {
+  if (begin_ > 0) {
     std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
     end_ -= begin_;
     begin_ = 0;
   }
+  if (end_ == buffer_.size()) buffer_.resize(std::min(2 * buffer_.size(), kMaxBufferBytes));
   const auto count = bytes_->read(std::span(buffer_).subspan(end_));
   if (!count) return tl::unexpected(count.error());
   end_ += *count;

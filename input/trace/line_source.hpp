@@ -5,9 +5,11 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "input/base/byte_stream.hpp"
+#include "input/trace/trace.hpp"
 
 namespace limn {
 
@@ -20,16 +22,20 @@ struct Line {
   bool too_long = false;     ///< `text` is only its first kMaxLineBytes bytes
 };
 
-/// Cuts bytes into lines with one buffer of fixed size. A UTF-8 byte order mark at the start is
-/// left out.
+/// Cuts bytes into lines with one buffer, which grows to hold the longest line but never beyond
+/// kMaxBufferBytes. A UTF-8 byte order mark at the start is left out.
 class LineSource {
  public:
-  explicit LineSource(std::unique_ptr<ByteSource> bytes);
+  static constexpr std::size_t kBlockBytes = std::size_t{64} * 1024;
+  static constexpr std::size_t kMaxBufferBytes = kMaxLineBytes + kBlockBytes;
+
+  explicit LineSource(std::unique_ptr<ByteSource> bytes)
+      : bytes_(std::move(bytes)), buffer_(kBlockBytes) {}
 
   /// The next line, nothing at the end. Error: kIo.
   Expected<std::optional<Line>> next();
 
-  /// Bytes of memory held; never changes.
+  /// Bytes of memory held.
   std::size_t buffer_bytes() const noexcept { return buffer_.size(); }
 
  private:

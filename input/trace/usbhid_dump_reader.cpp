@@ -1,6 +1,7 @@
 #include "input/trace/usbhid_dump_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -125,8 +126,8 @@ Expected<TrackedDevice*> UsbhidDumpReader::device(std::uint16_t bus, std::uint16
 }
 
 Expected<void> UsbhidDumpReader::take_row(std::string_view text) {
-  const auto room = std::span(bytes_).first(record_.capacity).subspan(record_.size);
-  const auto read = text::parse_hex_bytes(text, room);
+  if (bytes_.size() < record_.size + kRowBytes) bytes_.resize(record_.size + kRowBytes);
+  const auto read = text::parse_hex_bytes(text, std::span(bytes_).subspan(record_.size));
   if (!read.bad.empty()) {
     if (text::is_prose(text)) return {};  // the tool's messages: "Starting dumping interrupt .."
     return damaged(text::quoted(read.bad) + " is no two-digit byte");
@@ -139,7 +140,7 @@ Expected<void> UsbhidDumpReader::take_row(std::string_view text) {
                        std::to_string(kRowBytes),
                    ErrorCode::kPointCount);
   }
-  if (read.count > room.size()) {
+  if (record_.size + read.count > record_.capacity) {
     return damaged("the record has more than " + std::to_string(record_.capacity) + " bytes",
                    ErrorCode::kLimit);
   }

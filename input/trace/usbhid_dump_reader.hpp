@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -46,7 +45,7 @@ class UsbhidDumpReader final : public LineTraceReader {
   DeviceTable devices_;
   std::vector<std::uint32_t> addresses_;  // bus and device address; the position is the ordinal
   Record record_;
-  std::array<std::uint8_t, kMaxDescriptorBytes> bytes_{};
+  std::vector<std::uint8_t> bytes_;  // of record_; as many as the largest so far
 };
 
 }  // namespace limn
