@@ -28,7 +28,8 @@
 #endif
 #endif
 #ifdef LIMN_LEAK_SANITIZER
-#include <sanitizer/lsan_interface.h>
+extern "C" void __lsan_disable();  // of the sanitizer's run-time library
+extern "C" void __lsan_enable();
 #endif
 
 namespace limn {
