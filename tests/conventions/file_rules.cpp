@@ -32,9 +32,9 @@ bool belongs_to_a_library(const SourceFile& file) {
   return !file.is_under("modeler/app") && !file.is_under("tests");
 }
 
-constexpr string_view kForbiddenInLibraries[] = {
-    "throw", "std::cout", "std::cerr", "std::clog", "printf", "fprintf",  "puts",
-    "fputs", "putchar",   "abort",     "exit",      "_exit",  "terminate"};
+constexpr string_view kForbiddenWords[] = {"throw", "std::cout", "std::cerr", "std::clog"};
+constexpr string_view kForbiddenCalls[] = {"printf", "fprintf", "puts",  "fputs",    "putchar",
+                                           "abort",  "exit",    "_exit", "terminate"};
 
 constexpr string_view kMathematical[] = {"sin",   "cos",   "tan",  "asin", "acos",  "atan",
                                          "atan2", "exp",   "log",  "log2", "log10", "pow",
@@ -59,12 +59,16 @@ std::vector<std::string> library_violations(const SourceFile& file) {
   if (!belongs_to_a_library(file)) return {};
   const std::string code = code_of(file.text);
   std::vector<std::string> found;
-  for (const auto word : kForbiddenInLibraries)
-    if (has_word(code, word))
-      found.push_back(file.path + ": a library may not use " + std::string(word));
+  const auto forbid = [&found, &file](string_view word) {
+    found.push_back(file.path + ": a library may not use " + std::string(word));
+  };
+  for (const auto word : kForbiddenWords)
+    if (has_word(code, word)) forbid(word);
+  for (const auto function : kForbiddenCalls)
+    if (has_call(code, function)) forbid(function);
   if (file.is_under("drivers")) {
     for (const auto function : kMathematical)
-      if (has_word(code, "std::" + std::string(function)))
+      if (has_call(code, "std::" + std::string(function)))
         found.push_back(file.path + ": decoding may not use std::" + std::string(function));
   }
   return found;

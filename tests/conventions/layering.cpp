@@ -73,8 +73,8 @@ const std::vector<Layer>& layers() {
 
       {"tests",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
-       {"gtest/", "gmock/", "benchmark/", "Eigen/", "nlohmann/", "cairo", "opencascade", "sisl.h",
-        "posix", "linux/"}},
+       {"gtest/", "gmock/", "benchmark/", "CLI/", "sanitizer/", "Eigen/", "nlohmann/", "cairo",
+        "opencascade", "sisl.h", "posix", "linux/"}},
   };
   return table;
 }

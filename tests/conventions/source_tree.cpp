@@ -20,7 +20,8 @@ bool is_identifier_character(char c) {
 std::size_t raw_string_end(std::string_view text, std::size_t quote) {
   const auto open = text.find('(', quote);
   if (open == std::string_view::npos) return text.size() - 1;
-  const std::string closing = ")" + std::string(text.substr(quote + 1, open - quote - 1)) + "\"";
+  std::string closing(text.substr(quote + 1, open - quote - 1));
+  closing.insert(0, 1, ')').push_back('"');
   const auto end = text.find(closing, open);
   return end == std::string_view::npos ? text.size() - 1 : end + closing.size() - 1;
 }
@@ -47,6 +48,18 @@ std::size_t blank_end(std::string_view text, std::size_t i) {
   // A quote between digits separates them: 1'000.
   if (text[i] == '\'' && !is_identifier_character(before)) return literal_end(text, i);
   return i - 1;
+}
+
+/// Where `word` next stands in `code`, from `from` on, with no identifier character beside it.
+std::size_t find_word(std::string_view code, std::string_view word, std::size_t from) {
+  for (auto at = code.find(word, from); at != std::string_view::npos;
+       at = code.find(word, at + 1)) {
+    const auto end = at + word.size();
+    const bool starts = at == 0 || !is_identifier_character(code[at - 1]);
+    const bool ends = end == code.size() || !is_identifier_character(code[end]);
+    if (starts && ends) return at;
+  }
+  return std::string_view::npos;
 }
 
 }  // namespace
@@ -105,11 +118,14 @@ std::string code_of(std::string_view text) {
 }
 
 bool has_word(std::string_view code, std::string_view word) {
-  for (auto at = code.find(word); at != std::string_view::npos; at = code.find(word, at + 1)) {
-    const auto end = at + word.size();
-    const bool starts = at == 0 || !is_identifier_character(code[at - 1]);
-    const bool ends = end == code.size() || !is_identifier_character(code[end]);
-    if (starts && ends) return true;
+  return find_word(code, word, 0) != std::string_view::npos;
+}
+
+bool has_call(std::string_view code, std::string_view function) {
+  for (auto at = find_word(code, function, 0); at != std::string_view::npos;
+       at = find_word(code, function, at + 1)) {
+    const auto next = code.find_first_not_of(" \n", at + function.size());
+    if (next != std::string_view::npos && code[next] == '(') return true;
   }
   return false;
 }

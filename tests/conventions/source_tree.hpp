@@ -47,4 +47,7 @@ std::string code_of(std::string_view text);
 /// Whether `word` occurs in `code` with no identifier character on either side of it.
 bool has_word(std::string_view code, std::string_view word);
 
+/// Whether it occurs so with an opening bracket behind it: a call, not a variable of that name.
+bool has_call(std::string_view code, std::string_view function);
+
 }  // namespace limn::test
