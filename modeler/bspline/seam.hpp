@@ -10,12 +10,15 @@ namespace limn {
 
 /// The same periodic shape with its domain beginning at `u` (a knot from then on) instead of
 /// knots.domain_begin(), parameters kept: the domain becomes [u, u + period].
-/// Precondition: the direction is periodic, u lies in its domain. Errors as insert_knots().
+/// Precondition: the direction is periodic, domain_begin() <= u < domain_end(). Errors as
+/// insert_knots().
 template <int kDirections, int kDimension>
 Expected<TensorSpline<kDirections, kDimension>> move_seam(
     const TensorSpline<kDirections, kDimension>& spline, int direction, double u) {
   using Spline = TensorSpline<kDirections, kDimension>;
   LIMN_EXPECT(spline.knots(direction).is_periodic());
+  LIMN_EXPECT(u >= spline.knots(direction).domain_begin() &&
+              u < spline.knots(direction).domain_end());
   const double asked[] = {u};
   const bool is_knot = spline.knots(direction).multiplicity(u) > 0;
   auto with_knot =

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -121,11 +122,14 @@ class SegmentFitter {
     if (!(worst_ <= tolerance_)) return false;
     worst_ = spline_.measure(samples_);  // what project() gave was an estimate
     if (!(worst_ <= tolerance_)) return false;
-    if (!has_best_ || spline_.spans() < best_.spans()) {
-      best_ = spline_;
-      best_parameters_ = samples_.u;
-      has_best_ = true;
-    }
+    worst_ = std::max(worst_, spline_.measure_between(samples_, tolerance_));
+    if (!(worst_ <= tolerance_)) return false;
+    return (has_best_ && spline_.spans() >= best_.spans()) || keep();
+  }
+  bool keep() {
+    best_ = spline_;
+    best_parameters_ = samples_.u;
+    has_best_ = true;
     return true;
   }
 
@@ -163,7 +167,7 @@ class SegmentFitter {
   bool interpolate();
   void remove_knots();
   struct Removal;
-  bool plan_removal(int offset, Removal& removal) const;
+  bool plan_removal(int width, int offset, Removal& removal) const;
   std::vector<double> join(const Removal& removal) const;
   bool restore_failing(Removal& removal) const;
 
@@ -405,9 +409,13 @@ bool SegmentFitter<kDimension>::interpolate() {
     worst_ = spline_.measure(samples_);
     if (keep_if_within()) return true;
     if (split_failing_sites(sites)) continue;
-    if (sites.size() > last) return false;
-    sites.resize(last + 1);
-    std::iota(sites.begin(), sites.end(), std::size_t{0});
+    if (sites.size() <= last) {
+      sites.resize(last + 1);
+      std::iota(sites.begin(), sites.end(), std::size_t{0});
+      continue;
+    }
+    // Every sample is met. That is what was asked for, wherever the curve goes between them.
+    return spline_.measure(samples_) <= tolerance_ && keep();
   }
 }
 
@@ -425,8 +433,7 @@ struct SegmentFitter<kDimension>::Removal {
 
 /// Gives every window that can afford it one span less. False if none can.
 template <int kDimension>
-bool SegmentFitter<kDimension>::plan_removal(int offset, Removal& removal) const {
-  constexpr int kWidth = 6;
+bool SegmentFitter<kDimension>::plan_removal(int width, int offset, Removal& removal) const {
   constexpr double kLeastMass = 0.3;
   constexpr double kMostMass = 3;
   // Mass that one of the remaining spans may hold. On few spans a failure costs little: try more.
@@ -439,7 +446,7 @@ bool SegmentFitter<kDimension>::plan_removal(int offset, Removal& removal) const
   removal.old = spline_.breaks();
   bool any = false;
   int left = spans;
-  for (const SpanRange range : windows(spans, kWidth, offset)) {
+  for (const SpanRange range : windows(spans, width, offset)) {
     const auto begin = static_cast<std::size_t>(range.begin);
     const auto size = static_cast<std::size_t>(range.end - range.begin);
     std::vector<double> mass;
@@ -493,15 +500,24 @@ bool SegmentFitter<kDimension>::restore_failing(Removal& removal) const {
 
 template <int kDimension>
 void SegmentFitter<kDimension>::remove_knots() {
-  constexpr int kRounds = 4;
-  constexpr int kOffset = 3;       // windows straddle the borders of those of the round before
+  // Windows of changing widths, straddling the borders of those of the round before. Short segments
+  // can afford all of them.
+  struct Cut {
+    int width;
+    int offset;
+  };
+  constexpr std::array<Cut, 8> kCuts = {
+      {{6, 0}, {4, 0}, {5, 2}, {7, 0}, {6, 3}, {4, 2}, {5, 0}, {8, 4}}};
+  constexpr std::size_t kShortSegment = 300;  // samples
+  constexpr std::size_t kLongRounds = 4;
   constexpr double kNearly = 1.3;  // in tolerances: one more iteration may do
-  for (int round = 0; round < kRounds; ++round) {
+  const std::size_t rounds = sample_count() < kShortSegment ? kCuts.size() : kLongRounds;
+  for (std::size_t round = 0; round < rounds; ++round) {
     spline_ = best_;
     samples_.u = best_parameters_;
     project();
     Removal removal;
-    if (!plan_removal(round * kOffset, removal)) continue;
+    if (!plan_removal(kCuts[round].width, kCuts[round].offset, removal)) continue;
     spline_.set_breaks(join(removal), ends_.periodic);
     if (!iterate(kSliding) || !iterate(trusted_sliding())) return;
     if (keep_if_within()) continue;

@@ -85,8 +85,14 @@ class SegmentSpline {
   /// Stores the errors at the parameters as they are. Returns the largest.
   double measure(Samples& samples) const;
 
+  /// Looks at the curve half-way between neighbouring samples. Where it strays from their leg by
+  /// more than the tolerance and a quarter of the leg (a bend's rise over its chord, for a turn of
+  /// up to two radians), raises the errors of both above the tolerance in proportion. Returns the
+  /// largest such error, 0 if there is none.
+  double measure_between(Samples& samples, double tolerance) const;
+
  private:
-  using Coefficients = std::array<std::array<double, 4>, 4>;  // [function][power]
+  using Coefficients = std::array<std::array<double, 4>, 4>;  // [power][function]
 
   struct SpanCurve {  // the curve on a span as a polynomial in u - middle
     std::array<Point, 4> power;
@@ -150,7 +156,10 @@ void SegmentSpline<kDimension>::set_breaks(std::vector<double> breaks, bool peri
     const double half = 0.5 * (breaks_[s + 1] - breaks_[s]);
     for (std::size_t k = 0; k < 4; ++k) {
       const double third = (b.second[k] - at_begin.second[k]) / half;
-      basis_[s][k] = {b.value[k], b.first[k], 0.5 * b.second[k], third / 6.0};
+      basis_[s][0][k] = b.value[k];
+      basis_[s][1][k] = b.first[k];
+      basis_[s][2][k] = 0.5 * b.second[k];
+      basis_[s][3][k] = third / 6.0;
     }
   }
 }
@@ -163,7 +172,7 @@ typename SegmentSpline<kDimension>::SpanCurve SegmentSpline<kDimension>::span_cu
   const Point* p = points_.data() + s;
   for (std::size_t power = 0; power < 4; ++power) {
     out.power[power] =
-        b[0][power] * p[0] + b[1][power] * p[1] + b[2][power] * p[2] + b[3][power] * p[3];
+        b[power][0] * p[0] + b[power][1] * p[1] + b[power][2] * p[2] + b[power][3] * p[3];
   }
   return out;
 }
@@ -259,7 +268,7 @@ void SegmentSpline<kDimension>::assemble_distance(const Samples& samples) {
       const double h = samples.u[i] - mid;
       std::array<double, 4> value;
       for (std::size_t k = 0; k < 4; ++k) {
-        value[k] = b[k][0] + h * (b[k][1] + h * (b[k][2] + h * b[k][3]));
+        value[k] = b[0][k] + h * (b[1][k] + h * (b[2][k] + h * b[3][k]));
       }
       for (std::size_t k = 0; k < 4; ++k) {
         const double weighted = samples.weight[i] * value[k];
@@ -290,32 +299,33 @@ void SegmentSpline<kDimension>::assemble_tangent_distance(const Samples& samples
   for_each_in_span(samples, [&](int s, std::size_t begin, std::size_t end) {
     const auto& b = basis_[static_cast<std::size_t>(s)];
     const double mid = middle(s);
-    std::array<std::array<double, kTriangle>, 10> matrix{};
-    std::array<Point, 4> right;
-    right.fill(Point::Zero());
+    // [entry of M][pair (k, j), j <= k]: long inner loops, which compilers vectorise.
+    std::array<std::array<double, 10>, kTriangle> matrix{};
+    std::array<std::array<double, 4>, static_cast<std::size_t>(kDimension)> right{};
     for (std::size_t i = begin; i < end; ++i) {
       const double h = samples.u[i] - mid;
       std::array<double, 4> value;
       for (std::size_t k = 0; k < 4; ++k) {
-        value[k] = b[k][0] + h * (b[k][1] + h * (b[k][2] + h * b[k][3]));
+        value[k] = b[0][k] + h * (b[1][k] + h * (b[2][k] + h * b[3][k]));
+      }
+      std::array<double, 10> product;
+      for (std::size_t k = 0, pair = 0; k < 4; ++k) {
+        for (std::size_t j = 0; j <= k; ++j) product[pair++] = value[k] * value[j];
       }
       const Point& t = samples.tangent[i];
-      const Point& p = samples.points[i];
       const double w = samples.weight[i];
       const double slide = w * (1 - tangential);
-      std::array<double, kTriangle> metric;
+      const Point pulled = w * samples.points[i] - slide * t.dot(samples.points[i]) * t;
       std::size_t entry = 0;
       for (int d = 0; d < kDimension; ++d) {
-        for (int e = 0; e <= d; ++e) metric[entry++] = (d == e ? w : 0.0) - slide * t[d] * t[e];
-      }
-      const Point pulled = w * p - slide * t.dot(p) * t;
-      std::size_t pair = 0;
-      for (std::size_t k = 0; k < 4; ++k) {
-        for (std::size_t j = 0; j <= k; ++j, ++pair) {
-          const double product = value[k] * value[j];
-          for (std::size_t e = 0; e < kTriangle; ++e) matrix[pair][e] += product * metric[e];
+        for (int e = 0; e <= d; ++e, ++entry) {
+          const double metric = (d == e ? w : 0.0) - slide * t[d] * t[e];
+          for (std::size_t pair = 0; pair < 10; ++pair)
+            matrix[entry][pair] += metric * product[pair];
         }
-        right[k] += value[k] * pulled;
+        for (std::size_t k = 0; k < 4; ++k) {
+          right[static_cast<std::size_t>(d)][k] += value[k] * pulled[d];
+        }
       }
     }
     std::size_t pair = 0;
@@ -326,13 +336,14 @@ void SegmentSpline<kDimension>::assemble_tangent_distance(const Samples& samples
         std::size_t entry = 0;
         for (int d = 0; d < kDimension; ++d) {
           for (int e = 0; e <= d; ++e, ++entry) {
-            tangent_distance_.at(row + d, column + e) += matrix[pair][entry];
-            if (d != e && j != k) tangent_distance_.at(row + e, column + d) += matrix[pair][entry];
+            tangent_distance_.at(row + d, column + e) += matrix[entry][pair];
+            if (d != e && j != k) tangent_distance_.at(row + e, column + d) += matrix[entry][pair];
           }
         }
       }
       for (int d = 0; d < kDimension; ++d) {
-        tangent_distance_.right(row + d, 0) += right[static_cast<std::size_t>(k)][d];
+        tangent_distance_.right(row + d, 0) +=
+            right[static_cast<std::size_t>(d)][static_cast<std::size_t>(k)];
       }
     }
   });
@@ -411,6 +422,34 @@ double SegmentSpline<kDimension>::measure(Samples& samples) const {
       worst = std::max(worst, samples.error[i]);
     }
   });
+  return worst;
+}
+
+template <int kDimension>
+double SegmentSpline<kDimension>::measure_between(Samples& samples, double tolerance) const {
+  constexpr double kRise = 0.25;
+  double worst = 0;
+  int span = 0;
+  SpanCurve c = span_curve(span);
+  for (std::size_t i = 0; i + 1 < samples.u.size(); ++i) {
+    const Point leg = samples.points[i + 1] - samples.points[i];
+    const double length2 = leg.squaredNorm();
+    const double allowed = tolerance + kRise * std::sqrt(length2);
+    const double u = 0.5 * (samples.u[i] + samples.u[i + 1]);
+    while (span + 1 < spans() && u >= breaks_[static_cast<std::size_t>(span) + 1]) {
+      c = span_curve(++span);
+    }
+    const double h = u - middle(span);
+    const Point off =
+        c.power[0] + h * (c.power[1] + h * (c.power[2] + h * c.power[3])) - samples.points[i];
+    const double share = std::clamp(leg.dot(off) / length2, 0.0, 1.0);
+    const double distance2 = (off - share * leg).squaredNorm();
+    if (distance2 <= allowed * allowed) continue;
+    const double error = tolerance * std::sqrt(distance2) / allowed;
+    samples.error[i] = std::max(samples.error[i], error);
+    samples.error[i + 1] = std::max(samples.error[i + 1], error);
+    worst = std::max(worst, error);
+  }
   return worst;
 }
 

@@ -399,6 +399,11 @@ Expected<BsplineCurve<kDimension>> StrokeFitter<kDimension>::closed_curve() {
 template <int kDimension>
 Expected<BsplineCurve<kDimension>> StrokeFitter<kDimension>::rotated_to_first_sample(Curve curve) {
   const double seam = parameters_[0];
+  if (seam >= curve.knots().domain_end()) {
+    // The first samples rest in the corner where the pieces begin: the seam is there already.
+    std::fill_n(parameters_.begin(), cuts_.front(), curve.knots().domain_begin());
+    return curve;
+  }
   const double period = curve.knots().domain_end() - curve.knots().domain_begin();
   auto moved = move_seam(curve, 0, seam);
   if (!moved) return moved;
@@ -485,6 +490,7 @@ double StrokeFitter<kDimension>::polyline_deviation(const Curve& curve) const {
     for (int k = 1; k <= kProbes; ++k) {
       const Point p = at(std::min(a + (b - a) * k / (kProbes + 1), curve.knots().domain_end()));
       double nearest = distance_to_leg(p, position(i), position(i + 1));
+      if (nearest <= worst) continue;
       if (i > 0) nearest = std::min(nearest, distance_to_leg(p, position(i - 1), position(i)));
       if (i + 1 < legs) {
         nearest = std::min(nearest, distance_to_leg(p, position(i + 1), position(i + 2)));
@@ -495,15 +501,10 @@ double StrokeFitter<kDimension>::polyline_deviation(const Curve& curve) const {
   return worst;
 }
 
+// One translation unit each; see fit_curve.cpp for the dimensions between.
+extern template class StrokeFitter<2>;
+extern template class StrokeFitter<3>;
+extern template class StrokeFitter<6>;
+extern template class StrokeFitter<10>;
+
 }  // namespace limn::fit_detail
-
-namespace limn {
-
-template <int kDimension>
-Expected<CurveFit<kDimension>> fit_curve(
-    std::span<const Eigen::Matrix<double, kDimension, 1>> positions, std::span<const double> times,
-    const FitOptions& options) {
-  return fit_detail::StrokeFitter<kDimension>(positions, times, options).fit();
-}
-
-}  // namespace limn

@@ -1,0 +1,3 @@
+#include "modeler/fit/stroke_fit.hpp"
+
+template class limn::fit_detail::StrokeFitter<2>;
