@@ -33,8 +33,9 @@ bool belongs_to_a_library(const SourceFile& file) {
 }
 
 constexpr string_view kForbiddenWords[] = {"throw", "std::cout", "std::cerr", "std::clog"};
-constexpr string_view kForbiddenCalls[] = {"printf", "fprintf", "puts",  "fputs",    "putchar",
-                                           "abort",  "exit",    "_exit", "terminate"};
+constexpr string_view kForbiddenCalls[] = {
+    "printf",     "fprintf",        "puts",      "fputs",      "putchar",
+    "std::abort", "std::terminate", "std::exit", "std::_Exit", "_exit"};
 
 constexpr string_view kMathematical[] = {"sin",   "cos",   "tan",  "asin", "acos",  "atan",
                                          "atan2", "exp",   "log",  "log2", "log10", "pow",
