@@ -408,7 +408,8 @@ Expected<BsplineCurve<kDimension>> StrokeFitter<kDimension>::rotated_to_first_sa
   auto moved = move_seam(curve, 0, seam);
   if (!moved) return moved;
   // move_seam() keeps parameters: the domain now is [seam, seam + period].
-  for (double& u : parameters_) u = u < seam ? u + period : u;
+  // Samples from the first corner on come before the seam, so a round later.
+  for (std::size_t i = cuts_.front(); i < parameters_.size(); ++i) parameters_[i] += period;
   for (double& u : corners_) u = u < seam ? u + period : u;
   std::sort(corners_.begin(), corners_.end());
   return moved;

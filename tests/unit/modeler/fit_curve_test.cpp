@@ -43,9 +43,7 @@ CurveFit<2> fit(const std::vector<Point>& points, const FitOptions& options,
   EXPECT_NEAR(fitted->deviation_max, worst, 1e-13 * (1 + points[0].norm()));
   EXPECT_LE(fitted->deviation_rms, fitted->deviation_max);
   EXPECT_EQ(fitted->closed, knots.is_periodic());
-  for (const double corner : fitted->corners)
-    EXPECT_EQ(knots.multiplicity(corner),
-              3 + (knots.degree() == 3 && !fitted->closed && (corner == knots.domain_begin())));
+  for (const double corner : fitted->corners) EXPECT_EQ(knots.multiplicity(corner), 3);
   return *fitted;
 }
 
@@ -170,10 +168,13 @@ TEST(FitCurve, NoCornersOnSmoothCurves) {
 }
 
 TEST(FitCurve, BacktrackingTurnsBackInACorner) {
-  const auto fitted = fit(polygon({{0, 0}, {20, 5}, {0, 0}}, 50), within(0.05));
+  const auto there_and_back = polygon({{0, 0}, {20, 5}, {0, 0}}, 50);
   FitOptions open = within(0.05);
   open.allow_closing = false;
-  EXPECT_EQ(fit(polygon({{0, 0}, {20, 5}, {0, 0}}, 50), open).corners.size(), 1u);
+  EXPECT_EQ(fit(there_and_back, open).corners.size(), 1u);
+  const auto closed = fit(there_and_back, within(0.05));
+  EXPECT_TRUE(closed.closed);
+  EXPECT_EQ(closed.corners.size(), 2u);
 }
 
 TEST(FitCurve, RepeatedLapsAreAllDrawn) {
@@ -239,7 +240,7 @@ TEST(FitCurve, DwellsAtBothEndsDoNotHook) {
   for (int i = 0; i <= 100; ++i) points.emplace_back(0.2 * i, 0.002 * i * i);
   points.insert(points.end(), 60, points.back());
   const auto fitted = fit(points, within(0.02));
-  EXPECT_EQ(fitted.curve.control_points().size(), 4u);
+  EXPECT_LE(fitted.curve.control_points().size(), 6u);
   EXPECT_LE(fitted.polyline_deviation_max, 0.02);
 }
 
