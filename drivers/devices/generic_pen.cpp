@@ -13,6 +13,11 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr double kPi = 3.141592653589793;
 
+// Most devices lack most members of a layout: asking first keeps their reading free.
+bool is_set(const hid::FieldReader& reader, Bytes report) noexcept {
+  return reader.present() && reader.is_set(report);
+}
+
 /// What the switches of one report say.
 struct Switches {
   bool in_range = false;
@@ -23,15 +28,15 @@ struct Switches {
 
 Switches read_switches(const hid::PenLayout& layout, Bytes report) noexcept {
   Switches now;
-  now.inverted = layout.invert.is_set(report);
-  now.eraser = layout.eraser.is_set(report);
+  now.inverted = is_set(layout.invert, report);
+  now.eraser = is_set(layout.eraser, report);
   if (layout.tip_switch) {
-    now.tip = layout.tip_switch.is_set(report);
+    now.tip = is_set(layout.tip_switch, report);
   } else if (layout.pressure) {
     const auto& range = layout.pressure.reader.logical();
     now.tip = layout.pressure.reader.read(report).value_or(range.minimum) > range.minimum;
   }
-  now.in_range = layout.in_range.is_set(report) || layout.sense.is_set(report) ||
+  now.in_range = is_set(layout.in_range, report) || is_set(layout.sense, report) ||
                  (!layout.in_range && !layout.sense);
   return now;
 }
@@ -48,44 +53,82 @@ std::int32_t clamp_count(std::int64_t value) noexcept {
   return static_cast<std::int32_t>(std::clamp<std::int64_t>(value, Limits::min(), Limits::max()));
 }
 
-/// value in limn's unit, within low..high, or nothing.
-std::optional<double> read(const hid::AxisReader& axis, Bytes report, double low,
-                           double high) noexcept {
-  const auto counts = axis.reader.read(report);
-  if (!counts) return std::nullopt;
-  return std::clamp(axis.map(*counts), low, high);
+/// The counts into `value`; false where there are none.
+bool get(const hid::FieldReader& reader, Bytes report, std::int64_t& value) noexcept {
+  if (!reader.present()) return false;
+  const auto counts = reader.read(report);
+  value = counts.value_or(0);
+  return counts.has_value();
+}
+
+void set_axis(PenSample& sample, PenAxis axis, double PenSample::*member, double value) noexcept {
+  sample.axes.add(axis);
+  sample.*member = value;
+}
+
+/// The axis in limn's unit, within low..high, where the report has it.
+void read_axis(const hid::AxisReader& axis, Bytes report, double low, double high,
+               PenSample& sample, PenAxis which, double PenSample::*member) noexcept {
+  std::int64_t counts = 0;
+  if (!get(axis.reader, report, counts)) return;
+  set_axis(sample, which, member, std::clamp(axis.map(counts), low, high));
 }
 
 /// A turn into 0 .. 2 pi, whatever range the device counts it in.
-std::optional<double> read_turn(const hid::AxisReader& axis, Bytes report) noexcept {
-  const auto turn = read(axis, report, -2 * kPi, 2 * kPi);
-  if (!turn) return std::nullopt;
-  return *turn < 0 ? *turn + 2 * kPi : *turn;
-}
-
-void set_axis(PenSample& sample, PenAxis axis, double PenSample::*member,
-              std::optional<double> value) noexcept {
-  if (!value) return;
-  sample.axes.add(axis);
-  sample.*member = *value;
+void set_twist(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept {
+  std::int64_t counts = 0;
+  if (!get(layout.twist.reader, report, counts)) return;
+  const double turn = std::clamp(layout.twist.map(counts), -2 * kPi, 2 * kPi);
+  set_axis(sample, PenAxis::kTwist, &PenSample::twist_rad, turn < 0 ? turn + 2 * kPi : turn);
 }
 
 void set_position(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept {
   // Fields are at most 64 bits of counts; a tablet of 1 km keeps any garbage finite.
   constexpr double kFarthestMm = 1e6;
   if (layout.data_valid && !layout.data_valid.is_set(report)) return;
-  const auto x = layout.x.reader.read(report);
-  const auto y = layout.y.reader.read(report);
-  if (!x || !y) return;
-  sample.raw.x = clamp_count(*x);
-  sample.raw.y = clamp_count(*y);
+  std::int64_t x = 0;
+  std::int64_t y = 0;
+  if (!get(layout.x.reader, report, x) || !get(layout.y.reader, report, y)) return;
+  sample.raw.x = clamp_count(x);
+  sample.raw.y = clamp_count(y);
   set_axis(sample, PenAxis::kX, &PenSample::x_mm,
-           std::clamp(layout.x.map(*x), -kFarthestMm, kFarthestMm));
+           std::clamp(layout.x.map(x), -kFarthestMm, kFarthestMm));
   set_axis(sample, PenAxis::kY, &PenSample::y_mm,
-           std::clamp(layout.y.map(*y), -kFarthestMm, kFarthestMm));
+           std::clamp(layout.y.map(y), -kFarthestMm, kFarthestMm));
+}
+
+void set_pressure(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept {
+  std::int64_t counts = 0;
+  if (!get(layout.pressure.reader, report, counts)) return;
+  sample.raw.pressure = clamp_count(counts);
+  set_axis(sample, PenAxis::kPressure, &PenSample::pressure,
+           std::clamp(layout.pressure.map(counts), 0.0, 1.0));
+}
+
+void set_tilt(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept {
+  if (layout.tilt_x || layout.tilt_y) {
+    read_axis(layout.tilt_x, report, -kPi / 2, kPi / 2, sample, PenAxis::kTiltX,
+              &PenSample::tilt_x_rad);
+    read_axis(layout.tilt_y, report, -kPi / 2, kPi / 2, sample, PenAxis::kTiltY,
+              &PenSample::tilt_y_rad);
+    return;
+  }
+  constexpr double kDegreesPerRadian = 57.29577951308232;
+  std::int64_t altitude = 0;
+  std::int64_t azimuth = 0;
+  if (!get(layout.altitude.reader, report, altitude)) return;
+  if (!get(layout.azimuth.reader, report, azimuth)) return;
+  const auto degrees = [](const hid::AxisReader& axis, std::int64_t counts) {
+    return std::clamp(axis.map(counts), -2 * kPi, 2 * kPi) * kDegreesPerRadian;
+  };
+  const Tilt tilt = tilt_from_altitude_azimuth(degrees(layout.altitude, altitude),
+                                               degrees(layout.azimuth, azimuth));
+  set_axis(sample, PenAxis::kTiltX, &PenSample::tilt_x_rad, tilt.x_rad);
+  set_axis(sample, PenAxis::kTiltY, &PenSample::tilt_y_rad, tilt.y_rad);
 }
 
 void set_serial(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept {
+  if (!layout.serial && !layout.serial_high) return;
   const std::uint64_t low = layout.serial.read_bits(report).value_or(0);
   const std::uint64_t high = layout.serial_high.read_bits(report).value_or(0);
   const std::uint64_t serial = layout.serial_high ? (high << 32 | (low & 0xFFFFFFFFU)) : low;
@@ -94,40 +137,11 @@ void set_serial(const hid::PenLayout& layout, Bytes report, PenSample& sample) n
   sample.serial = serial;
 }
 
-void set_tilt(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept {
-  if (!layout.tilt_x && !layout.tilt_y) {
-    constexpr double kDegreesPerRadian = 57.29577951308232;
-    const auto altitude = read(layout.altitude, report, -2 * kPi, 2 * kPi);
-    const auto azimuth = read(layout.azimuth, report, -2 * kPi, 2 * kPi);
-    if (!altitude || !azimuth) return;
-    const Tilt tilt =
-        tilt_from_altitude_azimuth(*altitude * kDegreesPerRadian, *azimuth * kDegreesPerRadian);
-    set_axis(sample, PenAxis::kTiltX, &PenSample::tilt_x_rad, tilt.x_rad);
-    set_axis(sample, PenAxis::kTiltY, &PenSample::tilt_y_rad, tilt.y_rad);
-    return;
-  }
-  set_axis(sample, PenAxis::kTiltX, &PenSample::tilt_x_rad,
-           read(layout.tilt_x, report, -kPi / 2, kPi / 2));
-  set_axis(sample, PenAxis::kTiltY, &PenSample::tilt_y_rad,
-           read(layout.tilt_y, report, -kPi / 2, kPi / 2));
-}
-
-void set_other_axes(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept {
-  if (const auto counts = layout.pressure.reader.read(report)) {
-    sample.raw.pressure = clamp_count(*counts);
-    set_axis(sample, PenAxis::kPressure, &PenSample::pressure,
-             std::clamp(layout.pressure.map(*counts), 0.0, 1.0));
-  }
-  set_tilt(layout, report, sample);
-  set_axis(sample, PenAxis::kTwist, &PenSample::twist_rad, read_turn(layout.twist, report));
-  set_axis(sample, PenAxis::kDistance, &PenSample::distance, read(layout.distance, report, 0, 1));
-}
-
 PenButtons read_buttons(const hid::PenLayout& layout, Bytes report) noexcept {
   unsigned pressed = 0;
-  if (layout.barrel_switch.is_set(report)) pressed |= 1U;
-  if (layout.secondary_barrel_switch.is_set(report)) pressed |= 2U;
-  if (layout.barrel_switch3.is_set(report)) pressed |= 4U;
+  if (is_set(layout.barrel_switch, report)) pressed |= 1U;
+  if (is_set(layout.secondary_barrel_switch, report)) pressed |= 2U;
+  if (is_set(layout.barrel_switch3, report)) pressed |= 4U;
   return static_cast<PenButtons>(pressed);
 }
 
@@ -149,6 +163,7 @@ GenericPen::GenericPen(std::vector<hid::PenLayout> layouts) : layouts_(std::move
 
 const hid::PenLayout* GenericPen::layout_for(Bytes report) const noexcept {
   // Where one report has room for several pens, the first in range speaks.
+  if (sized_ == 1) return layouts_.front().matches(report) ? &layouts_.front() : nullptr;
   const hid::PenLayout* first = nullptr;
   for (const hid::PenLayout& layout : layouts()) {
     if (!layout.matches(report)) continue;
@@ -159,6 +174,7 @@ const hid::PenLayout* GenericPen::layout_for(Bytes report) const noexcept {
 }
 
 std::uint32_t GenericPen::count_lost(const hid::PenLayout& layout, Bytes report) noexcept {
+  if (!layout.sequence) return 0;
   const auto number = layout.sequence.read(report);
   if (!number) return 0;
   const auto previous = std::exchange(last_sequence_, number);
@@ -188,7 +204,10 @@ ReportClass GenericPen::decode(Bytes report, Timestamp time, PenOutput& out) noe
   sample.buttons = read_buttons(*layout, report);
   sample.lost = count_lost(*layout, report);
   set_position(*layout, report, sample);
-  set_other_axes(*layout, report, sample);
+  set_pressure(*layout, report, sample);
+  set_tilt(*layout, report, sample);
+  set_twist(*layout, report, sample);
+  read_axis(layout->distance, report, 0, 1, sample, PenAxis::kDistance, &PenSample::distance);
   set_serial(*layout, report, sample);
   out.push(sample);
   return ReportClass::kPen;

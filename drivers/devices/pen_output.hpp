@@ -25,12 +25,12 @@ class PenOutput {
 
   /// Precondition: at most kMaxPushed times after begin().
   void push(const PenSample& sample) noexcept {
-    for (const PenSample& legal : machine_.push(sample)) {
-      LIMN_EXPECT(count_ < kCapacity);
-      samples_[count_] = legal;
-      samples_[count_].device = device_;
-      ++count_;
-    }
+    LIMN_EXPECT(count_ + PenStateMachine::kMaxSamples <= kCapacity);
+    const std::size_t given =
+        machine_.push(sample, std::span<PenSample, PenStateMachine::kMaxSamples>(
+                                  samples_.data() + count_, PenStateMachine::kMaxSamples));
+    for (std::size_t i = 0; i < given; ++i) samples_[count_ + i].device = device_;
+    count_ += given;
   }
 
   /// The device went away: its tool lifts and leaves range, at `time`. Nothing to repair.

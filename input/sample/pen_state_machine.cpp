@@ -56,12 +56,13 @@ bool is_legal_transition(PenState from, PenState to) noexcept {
   return kLegal[index(from)][index(to)];
 }
 
-std::span<const PenSample> PenStateMachine::push(const PenSample& sample) noexcept {
+std::size_t PenStateMachine::push(const PenSample& sample,
+                                  std::span<PenSample, kMaxSamples> out) noexcept {
   std::size_t count = 0;
   const auto give = [&](const PenSample& inserted) {
-    out_[count] = inserted;
-    out_[count].time = sample.time;
-    out_[count].lost = 0;
+    out[count] = inserted;
+    out[count].time = sample.time;
+    out[count].lost = 0;
     ++count;
   };
   const bool other_tool = changes_tool(last_, sample);
@@ -75,11 +76,11 @@ std::span<const PenSample> PenStateMachine::push(const PenSample& sample) noexce
     }
     if (in_contact(sample.state)) give(hovering_copy(sample));
   }
-  out_[count++] = sample;
-  out_[count - 1].lost = 0;
-  out_[0].lost = sample.lost;
+  out[count++] = sample;
+  out[count - 1].lost = 0;
+  out[0].lost = sample.lost;
   last_ = sample;
-  return {out_.data(), count};
+  return count;
 }
 
 }  // namespace limn

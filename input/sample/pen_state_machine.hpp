@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -32,8 +31,9 @@ class PenStateMachine {
   /// Most samples given for one: lift, leave, enter, contact.
   static constexpr std::size_t kMaxSamples = 4;
 
-  /// The samples that stand for `sample`, itself the last; valid until the next call. No heap.
-  std::span<const PenSample> push(const PenSample& sample) noexcept;
+  /// Writes the samples that stand for `sample`, itself the last, to the front of `out` and returns
+  /// their number.
+  std::size_t push(const PenSample& sample, std::span<PenSample, kMaxSamples> out) noexcept;
 
   /// The last sample given; kOutOfRange before the first.
   const PenSample& last() const noexcept { return last_; }
@@ -45,7 +45,6 @@ class PenStateMachine {
   void reset() noexcept { last_ = PenSample{}; }
 
  private:
-  std::array<PenSample, kMaxSamples> out_;
   PenSample last_;
   std::uint64_t repaired_ = 0;
 };

@@ -34,6 +34,16 @@ PenSample sample_of(PenState state, double x_mm = 0, Timestamp time = {}) {
   return sample;
 }
 
+/// A machine whose samples come as a vector.
+class Machine : public PenStateMachine {
+ public:
+  std::vector<PenSample> push(const PenSample& sample) {
+    std::array<PenSample, kMaxSamples> out;
+    const std::size_t count = PenStateMachine::push(sample, out);
+    return {out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count)};
+  }
+};
+
 std::vector<PenState> states(std::span<const PenSample> samples) {
   std::vector<PenState> out;
   for (const PenSample& sample : samples) out.push_back(sample.state);
@@ -57,7 +67,7 @@ TEST(PenStateMachine, TheTableHasTheFourWaysBothDirectionsAndItself) {
 }
 
 TEST(PenStateMachine, LegalSamplesPassUnchangedAndUncounted) {
-  PenStateMachine machine;
+  Machine machine;
   for (const PenState state :
        {S::kInRange, S::kInContact, S::kInContact, S::kInRange, S::kOutOfRange, S::kInRangeErasing,
         S::kErasing, S::kInRangeErasing, S::kOutOfRange, S::kOutOfRange}) {
@@ -67,7 +77,7 @@ TEST(PenStateMachine, LegalSamplesPassUnchangedAndUncounted) {
 }
 
 TEST(PenStateMachine, ContactOutOfNowhereFirstComesInRangeAtTheSamePlaceAndTime) {
-  PenStateMachine machine;
+  Machine machine;
   PenSample contact = sample_of(S::kInContact, 7, std::chrono::milliseconds(40));
   contact.lost = 3;
   const auto samples = machine.push(contact);
@@ -81,7 +91,7 @@ TEST(PenStateMachine, ContactOutOfNowhereFirstComesInRangeAtTheSamePlaceAndTime)
 }
 
 TEST(PenStateMachine, LeavingFromContactLiftsFirstWhereThePenWas) {
-  PenStateMachine machine;
+  Machine machine;
   machine.push(sample_of(S::kInRange, 1));
   machine.push(sample_of(S::kInContact, 2));
   PenSample gone;
@@ -95,7 +105,7 @@ TEST(PenStateMachine, LeavingFromContactLiftsFirstWhereThePenWas) {
 }
 
 TEST(PenStateMachine, PenToEraserGoesThroughOutOfRangeWithoutPosition) {
-  PenStateMachine machine;
+  Machine machine;
   machine.push(sample_of(S::kInRange, 1));
   machine.push(sample_of(S::kInContact, 2));
   const auto samples = machine.push(sample_of(S::kErasing, 3));
@@ -109,7 +119,7 @@ TEST(PenStateMachine, PenToEraserGoesThroughOutOfRangeWithoutPosition) {
 }
 
 TEST(PenStateMachine, AnotherToolInRangeLeavesBetween) {
-  PenStateMachine machine;
+  Machine machine;
   PenSample mouse = sample_of(S::kInRange, 4);
   mouse.tool = Tool::kTabletMouse;
   machine.push(mouse);
@@ -119,7 +129,7 @@ TEST(PenStateMachine, AnotherToolInRangeLeavesBetween) {
 }
 
 TEST(PenStateMachine, AnOutOfRangeSampleKeepsItsCoordinates) {
-  PenStateMachine machine;
+  Machine machine;
   machine.push(sample_of(S::kInRange, 1));
   const auto samples = machine.push(sample_of(S::kOutOfRange, 8));
   ASSERT_EQ(samples.size(), 1U);
@@ -128,7 +138,7 @@ TEST(PenStateMachine, AnOutOfRangeSampleKeepsItsCoordinates) {
 }
 
 TEST(PenStateMachine, ResetForgetsTheStateButNotTheCount) {
-  PenStateMachine machine;
+  Machine machine;
   machine.push(sample_of(S::kInContact));
   machine.reset();
   EXPECT_EQ(machine.last().state, S::kOutOfRange);
@@ -140,7 +150,7 @@ TEST(PenStateMachine, ResetForgetsTheStateButNotTheCount) {
 // last of each batch, and a repair is counted exactly where the device broke the rules.
 TEST(PenStateMachineProperty, OnlyLegalTransitionsComeOut) {
   test::for_all(200, [](test::Rng& rng) {
-    PenStateMachine machine;
+    Machine machine;
     PenSample before;  // out of range
     std::uint64_t broken = 0;
     for (int i = 0; i < 200; ++i) {
