@@ -1,9 +1,9 @@
 // limn-bench AREA...: measures limn against its goals and, in the same run, against other
 // libraries.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,35 +46,72 @@ int run_area(const Area& area, bool as_json) {
   return missed;
 }
 
+constexpr const char* kHelp =
+    "usage: limn-bench [AREA...] [--format text|jsonl] [--require] [--list]\n"
+    "Measures limn against its goals and against other libraries in the same run. All figures are\n"
+    "costs; ratio = peer / limn, so above 1 limn is better. Without AREA everything is measured.\n"
+    "  --format  text: a table; jsonl: one object a row\n"
+    "  --require exit with 1 if a row misses its goal\n"
+    "  --list    name the areas and end\n";
+
+struct Arguments {
+  std::vector<const Area*> areas;
+  bool as_json = false;
+  bool require = false;
+  bool list = false;
+  bool help = false;
+  std::string complaint;  ///< what is wrong; empty if nothing is
+};
+
+const Area* find_area(std::string_view name) {
+  const auto* const found = std::find_if(std::begin(kAreas), std::end(kAreas),
+                                         [name](const Area& area) { return area.name == name; });
+  return found == std::end(kAreas) ? nullptr : found;
+}
+
+Arguments parse(const std::vector<std::string_view>& words) {
+  Arguments result;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string_view word = words[i];
+    if (word == "--list") {
+      result.list = true;
+    } else if (word == "--require") {
+      result.require = true;
+    } else if (word == "--help" || word == "-h") {
+      result.help = true;
+    } else if (word == "--format") {
+      const std::string_view format = i + 1 < words.size() ? words[++i] : "";
+      result.as_json = format == "jsonl";
+      if (format != "jsonl" && format != "text") result.complaint = "--format is text or jsonl";
+    } else if (const Area* area = find_area(word)) {
+      result.areas.push_back(area);
+    } else {
+      result.complaint = "there is no area or option '" + std::string(word) + "'; see --help";
+    }
+  }
+  if (result.areas.empty())
+    for (const Area& area : kAreas) result.areas.push_back(&area);
+  return result;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
-      "Measures limn against its goals and against other libraries in the same run. All figures "
-      "are "
-      "costs;\nratio = peer / limn, so above 1 limn is better."};
-  std::vector<std::string> wanted;
-  std::string format = "text";
-  bool list = false;
-  bool require = false;
-  std::vector<std::string> names;
-  for (const Area& area : kAreas) names.emplace_back(area.name);
-  app.add_option("AREA", wanted, "What to measure; everything unless given")
-      ->check(CLI::IsMember(names));
-  app.add_option("--format", format, "text: a table; jsonl: one object a row")
-      ->check(CLI::IsMember({"text", "jsonl"}));
-  app.add_flag("--list", list, "Name the areas and end");
-  app.add_flag("--require", require, "Exit with 1 if a row misses its goal");
-  CLI11_PARSE(app, argc, argv);
-  if (list) {
+  const Arguments arguments = parse({argv + 1, argv + argc});
+  if (!arguments.complaint.empty()) {
+    std::fprintf(stderr, "limn-bench: %s\n", arguments.complaint.c_str());
+    return 2;
+  }
+  if (arguments.help) {
+    std::fputs(kHelp, stdout);
+    return 0;
+  }
+  if (arguments.list) {
     list_areas();
     return 0;
   }
   int missed = 0;
-  for (const Area& area : kAreas) {
-    if (wanted.empty() || std::count(wanted.begin(), wanted.end(), area.name) > 0)
-      missed += run_area(area, format == "jsonl");
-  }
+  for (const Area* area : arguments.areas) missed += run_area(*area, arguments.as_json);
   if (missed > 0) std::fprintf(stderr, "limn-bench: %d rows miss their goal\n", missed);
-  return require && missed > 0 ? 1 : 0;
+  return arguments.require && missed > 0 ? 1 : 0;
 }

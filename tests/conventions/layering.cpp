@@ -73,7 +73,7 @@ const std::vector<Layer>& layers() {
 
       {"tests",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
-       {"gtest/", "gmock/", "benchmark/", "CLI/", "sanitizer/", "Eigen/", "nlohmann/", "cairo",
+       {"gtest/", "gmock/", "benchmark/", "sanitizer/", "Eigen/", "nlohmann/", "cairo",
         "opencascade", "sisl.h", "posix", "linux/"}},
   };
   return table;
