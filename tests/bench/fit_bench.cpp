@@ -79,13 +79,13 @@ constexpr const char* kOcct = "Open CASCADE";
 /// limn first, then the peers that this build has.
 std::vector<Fitter> fitters() {
   return {
-      {"limn", fit_with_limn, {0.05, 5}},
+      {"limn", fit_with_limn, {0.02, 10}},
 #ifdef LIMN_BENCH_OCCT
       {kOcct, fit_with_occt, {0.001, 1}},  // seconds a fit, so once is exact enough
 #endif
 #ifdef LIMN_BENCH_SISL
-      {"SISL, chord length", fit_with_sisl_by_length, {0.05, 3}},
-      {"SISL, time", fit_with_sisl_by_time, {0.05, 3}},
+      {"SISL, chord length", fit_with_sisl_by_length, {0.02, 5}},
+      {"SISL, time", fit_with_sisl_by_time, {0.02, 5}},
 #endif
   };
 }

@@ -21,12 +21,10 @@ class Capture : public benchmark::BenchmarkReporter {
                                                        static_cast<double>(run.iterations));
   }
 
-  double median(const std::string& name) {
-    auto& times = seconds_[name];
-    if (times.empty()) return 0;
-    const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-    std::nth_element(times.begin(), middle, times.end());
-    return *middle;
+  double least(const std::string& name) const {
+    const auto found = seconds_.find(name);
+    if (found == seconds_.end() || found->second.empty()) return 0;
+    return *std::min_element(found->second.begin(), found->second.end());
   }
 
  private:
@@ -60,7 +58,7 @@ std::vector<double> measure(const std::vector<Job>& jobs) {
   Capture capture;
   benchmark::RunSpecifiedBenchmarks(&capture, ".");
   std::vector<double> seconds;
-  for (const Job& job : jobs) seconds.push_back(capture.median(job.name));
+  for (const Job& job : jobs) seconds.push_back(capture.least(job.name));
   benchmark::ClearRegisteredBenchmarks();
   return seconds;
 }

@@ -98,6 +98,7 @@ std::optional<double> memory_of_decoding_a_gigabyte(const fs::path& limn,
     dup2(ends[0], STDIN_FILENO);
     const int null = open("/dev/null", O_WRONLY);
     dup2(null, STDOUT_FILENO);
+    dup2(null, STDERR_FILENO);  // its summary would stand among the rows
     execl(limn.c_str(), "limn", "decode", "--format", "csv", "-", static_cast<char*>(nullptr));
     _exit(127);
   }
