@@ -40,13 +40,24 @@ Row blossom(const KnotVector& knots, int span, std::span<const double> arguments
   return row;
 }
 
-/// The span of `knots` that holds the middle of a new function's support [low, high] as far as it
-/// lies in the domain. Any span under the support gives the same control point; the middle one
-/// keeps the polar form's arguments near it, and rounding small.
-int middle_span(const KnotVector& knots, double low, double high) {
-  const double a = std::max(low, knots.domain_begin());
-  const double b = std::min(high, knots.domain_end());
-  return knots.find_span(a + 0.5 * (b - a));
+/// Where to take the polar form for a new function of support [low, high], and in which order its
+/// arguments, so that all steps are convex combinations: on the span where the support begins, with
+/// ascending arguments (this is the Oslo algorithm, [CLR80]); if that lies before the domain, on
+/// the one where it ends, with descending arguments. Any other span under the support gives the
+/// same row in exact arithmetic only: the arguments would lie far outside it.
+struct Place {
+  int span;
+  bool ascending;
+};
+
+Place place_of(const KnotVector& knots, double low, double high) {
+  if (low >= knots.domain_begin()) return {knots.find_span(low), true};
+  const int span = knots.find_span(high);  // the last non-empty one at and after the domain's end
+  if (high >= knots.domain_end()) return {span, false};
+  // The span that ends at `high` where that is a knot.
+  int before = span;
+  while (knots.values()[static_cast<std::size_t>(before)] >= high) --before;
+  return {before, false};
 }
 
 /// Rows of a refinement, one a new control point, from `row_of(i)` for each new function i.
@@ -108,8 +119,7 @@ Expected<KnotVector> elevated_knots(const KnotVector& knots) {
     std::merge(round.begin(), round.end(), distinct.begin(), distinct.end(), merged.begin());
     return KnotVector::make_periodic(degree, merged, knots.domain_end());
   }
-  // Knots outside the domain are raised too, where there is room: what counts is that the domain
-  // keeps index `degree`. Those knots only shape the end functions, so any choice is right.
+  // Knots outside the domain only shape the end functions; the old ones do, as many as there are.
   const auto& old = knots.values();
   const auto p = static_cast<std::ptrdiff_t>(knots.degree());
   const auto n = static_cast<std::ptrdiff_t>(knots.basis_count());
@@ -127,18 +137,21 @@ KnotRefinement elevate_once(const KnotVector& from, const KnotVector& to) {
   const int p = from.degree();
   const double* knot = to.values().data();
   auto map = make_map(from, to, [&](int i) {
-    const int span = middle_span(from, knot[i], knot[i + p + 2]);
+    const Place place = place_of(from, knot[i], knot[i + p + 2]);
+    std::array<double, kMostBasis + 1> inner;  // the p + 1 knots inside the support
+    std::copy_n(knot + i + 1, p + 1, inner.begin());
+    if (!place.ascending) std::reverse(inner.begin(), inner.begin() + p + 1);
     Row sum{};
     std::array<double, kMostBasis> arguments;
-    for (int left_out = 1; left_out <= p + 1; ++left_out) {
+    for (int left_out = 0; left_out <= p; ++left_out) {
       std::size_t count = 0;
-      for (int k = 1; k <= p + 1; ++k) {
-        if (k != left_out) arguments[count++] = knot[i + k];
+      for (int k = 0; k <= p; ++k) {
+        if (k != left_out) arguments[count++] = inner[static_cast<std::size_t>(k)];
       }
-      const Row row = blossom(from, span, {arguments.data(), count});
+      const Row row = blossom(from, place.span, {arguments.data(), count});
       for (std::size_t k = 0; k < row.size(); ++k) sum[k] += row[k] / (p + 1);
     }
-    return std::pair(span, sum);
+    return std::pair(place.span, sum);
   });
   return {to, std::move(map)};
 }
@@ -205,8 +218,12 @@ Expected<KnotRefinement> insert_knots(const KnotVector& knots, std::span<const d
   const int p = knots.degree();
   const double* knot = to->values().data();
   auto map = make_map(knots, *to, [&](int i) {
-    const int span = middle_span(knots, knot[i], knot[i + p + 1]);
-    return std::pair(span, blossom(knots, span, {knot + i + 1, static_cast<std::size_t>(p)}));
+    const Place place = place_of(knots, knot[i], knot[i + p + 1]);
+    std::array<double, kMostBasis> arguments;
+    std::copy_n(knot + i + 1, p, arguments.begin());
+    if (!place.ascending) std::reverse(arguments.begin(), arguments.begin() + p);
+    return std::pair(place.span,
+                     blossom(knots, place.span, {arguments.data(), static_cast<std::size_t>(p)}));
   });
   return KnotRefinement{*std::move(to), std::move(map)};
 }

@@ -30,11 +30,12 @@ struct Segment {
 /// Fits one segment within a tolerance at every sample, with few spans:
 ///
 ///  1. plain least squares on many spans, which cannot lose the way (initial_fit);
-///  2. knots where the shape needs them, by the jumps of its third derivative (place_by_shape);
-///  3. tangent distance minimisation, samples sliding, knots moved by measured errors until every
+///  2. parameters that advance more where the curve bends (follow_bends);
+///  3. knots where the shape needs them, by the jumps of its third derivative (place_by_shape);
+///  4. tangent distance minimisation, samples sliding, knots moved by measured errors until every
 ///     sample is within tolerance (reach_tolerance);
-///  4. failing that, knots at the samples themselves, up to interpolation (interpolate);
-///  5. windows of spans that can do with one span less lose it, and those that then fail get it
+///  5. failing that, knots at the samples themselves, up to interpolation (interpolate);
+///  6. windows of spans that can do with one span less lose it, and those that then fail get it
 ///  back
 ///     (remove_knots).
 ///
@@ -51,6 +52,7 @@ class SegmentFitter {
       : samples_(segment.points, std::move(segment.parameters)),
         chord_(std::move(segment.chord)),
         closing_leg_(segment.closing_leg),
+        chord_closing_leg_(segment.closing_leg),
         ends_(std::move(segment.ends)),
         tolerance_(tolerance),
         least_gap_(least_gap) {}
@@ -59,6 +61,7 @@ class SegmentFitter {
   /// precision is at its end.
   bool run() {
     initial_fit();
+    follow_bends();
     if (hopelessly_dense() || !place_by_shape() || !reach_tolerance()) {
       if (!has_best_ && !interpolate()) return false;
     }
@@ -158,6 +161,8 @@ class SegmentFitter {
   }
   void set_breaks_at(const std::vector<std::size_t>& sites, const std::vector<double>& parameters);
   bool split_failing_sites(std::vector<std::size_t>& sites) const;
+  void follow_bends();
+  std::vector<double> bends() const;
   void estimate_noise();
   std::vector<double> masses_by_shape() const;
   bool place_by_shape();
@@ -173,7 +178,8 @@ class SegmentFitter {
 
   SegmentSamples<kDimension> samples_;
   std::vector<double> chord_;
-  double closing_leg_;
+  double closing_leg_;  // in terms of samples_.u
+  double chord_closing_leg_;
   SegmentEnds<kDimension> ends_;
   double tolerance_;
   double least_gap_;
@@ -246,6 +252,80 @@ void SegmentFitter<kDimension>::initial_fit() {
     if (!split_failing_sites(sites)) break;
   }
   estimate_noise();
+  keep_if_within();
+}
+
+/// Turning of the curve over each leg between samples (over the closing one, too, where periodic),
+/// per unit of parameter, averaged over a few legs.
+template <int kDimension>
+std::vector<double> SegmentFitter<kDimension>::bends() const {
+  constexpr std::size_t kReach = 2;  // legs either side
+  const std::size_t legs = sample_count() - (ends_.periodic ? 0 : 1);
+  std::vector<double> turned = {0.0};  // up to each leg's begin
+  std::vector<double> passed = {0.0};
+  for (std::size_t i = 0; i < legs; ++i) {
+    const std::size_t next = i + 1 < sample_count() ? i + 1 : 0;
+    const double cosine = samples_.tangent[i].dot(samples_.tangent[next]);
+    turned.push_back(turned.back() + std::acos(std::clamp(cosine, -1.0, 1.0)));
+    const double leg = next == 0 ? end_parameter(samples_.u) : samples_.u[next];
+    passed.push_back(passed.back() + leg - samples_.u[i]);
+  }
+  std::vector<double> out(legs);
+  for (std::size_t i = 0; i < legs; ++i) {
+    const std::size_t low = i - std::min(i, kReach);
+    const std::size_t high = std::min(legs, i + 1 + kReach);
+    const double length = passed[high] - passed[low];
+    out[i] = length > 0 ? (turned[high] - turned[low]) / length : 0.0;
+  }
+  return out;
+}
+
+/// Gives each leg a share of the parameter in proportion to length times curvature^(1/3), as affine
+/// arc length does: on it a parabola is a polynomial and an ellipse turns evenly, and pens (whose
+/// speed falls with the same power of curvature [LTV83]) move about evenly. A floor keeps straight
+/// parts going by length.
+template <int kDimension>
+void SegmentFitter<kDimension>::follow_bends() {
+  constexpr double kPower = 1.0 / 3;
+  constexpr double kFloor = 0.2;       // of the mean curvature
+  constexpr double kLeastTurning = 1;  // radians, below which the mean says little
+  constexpr double kTrusted = 3;       // in tolerances: a worse fit's tangents are no guide
+  constexpr std::size_t kLeastSamples = 6;
+  if (sample_count() < kLeastSamples || !(worst_ <= kTrusted * tolerance_)) return;
+  const auto curvature = bends();
+  const std::vector<double> old = samples_.u;
+  const double length = end_parameter(old);
+  const auto leg_end = [&](std::size_t i) { return i + 1 < old.size() ? old[i + 1] : length; };
+  double turning = kLeastTurning;
+  for (std::size_t i = 0; i < curvature.size(); ++i)
+    turning += curvature[i] * (leg_end(i) - old[i]);
+  std::vector<double> mapped = {0.0};
+  for (std::size_t i = 0; i < curvature.size(); ++i) {
+    const double relative = curvature[i] * length / turning;
+    const double leg = leg_end(i) - old[i];
+    mapped.push_back(mapped.back() +
+                     std::max(std::pow(relative + kFloor, kPower) * leg, least_gap_));
+  }
+  const double scale = length / mapped.back();
+  for (double& u : mapped) u *= scale;
+
+  std::vector<double> breaks = {0.0};
+  std::size_t i = 0;
+  for (const double u : std::span(spline_.breaks()).subspan(1)) {
+    while (i + 1 < curvature.size() && leg_end(i) < u) ++i;
+    const double leg = leg_end(i) - old[i];
+    const double share = leg > 0 ? std::clamp((u - old[i]) / leg, 0.0, 1.0) : 0.0;
+    const double to = mapped[i] + share * (mapped[i + 1] - mapped[i]);
+    if (to >= breaks.back() + least_gap_ && to <= mapped.back() - least_gap_) breaks.push_back(to);
+  }
+  breaks.push_back(mapped.back());
+  if (static_cast<int>(breaks.size()) <= least_spans()) return;
+  if (ends_.periodic) closing_leg_ = mapped.back() - mapped[old.size() - 1];
+  mapped.resize(old.size());
+  samples_.u = std::move(mapped);
+  spline_.set_breaks(std::move(breaks), ends_.periodic);
+  if (!solve(1.0)) return;
+  project();
   keep_if_within();
 }
 
@@ -399,6 +479,7 @@ bool SegmentFitter<kDimension>::interpolate() {
   constexpr std::size_t kSamplesPerSpan = 4;
   const std::size_t last = sample_count() - (ends_.periodic ? 0 : 1);
   samples_.u = chord_;
+  closing_leg_ = chord_closing_leg_;
   std::fill(samples_.weight.begin(), samples_.weight.end(), 1.0);
   std::vector<std::size_t> sites;
   for (std::size_t i = 0; i < last; i += kSamplesPerSpan) sites.push_back(i);
@@ -510,14 +591,21 @@ void SegmentFitter<kDimension>::remove_knots() {
       {{6, 0}, {4, 0}, {5, 2}, {7, 0}, {6, 3}, {4, 2}, {5, 0}, {8, 4}}};
   constexpr std::size_t kShortSegment = 300;  // samples
   constexpr std::size_t kLongRounds = 4;
+  constexpr std::size_t kMostRounds = 24;
+  constexpr int kWorthwhile = 25;  // one span in so many: beyond the rounds above, on with it
   constexpr double kNearly = 1.3;  // in tolerances: one more iteration may do
   const std::size_t rounds = sample_count() < kShortSegment ? kCuts.size() : kLongRounds;
-  for (std::size_t round = 0; round < rounds; ++round) {
+  int before = best_.spans() * 2;
+  for (std::size_t round = 0; round < kMostRounds; ++round) {
+    const bool worthwhile = (before - best_.spans()) * kWorthwhile > before;
+    if (round >= rounds && !worthwhile) return;
+    before = best_.spans();
+    const Cut cut = kCuts[round % kCuts.size()];
     spline_ = best_;
     samples_.u = best_parameters_;
     project();
     Removal removal;
-    if (!plan_removal(kCuts[round].width, kCuts[round].offset, removal)) continue;
+    if (!plan_removal(cut.width, cut.offset, removal)) continue;
     spline_.set_breaks(join(removal), ends_.periodic);
     if (!iterate(kSliding) || !iterate(trusted_sliding())) return;
     if (keep_if_within()) continue;
