@@ -1,2 +1,0 @@
-limn_add_fuzz_target(pen_decoder SOURCE pen_decoder.cpp LINK limn_devices)
-limn_add_fuzz_target(evdev_pen_decoder SOURCE evdev_pen_decoder.cpp LINK limn_devices)
