@@ -26,7 +26,7 @@ class BandedSystem {
     rows_ = n * kBlock;
     border_ = cyclic ? kReach * kBlock : 0;
     inner_ = rows_ - border_;
-    band_.assign(static_cast<std::size_t>(inner_) * kBand, 0.0);
+    band_.assign(static_cast<std::size_t>(inner_ + kBand - 1) * kBand, 0.0);
     border_rows_.assign(static_cast<std::size_t>(border_) * static_cast<std::size_t>(rows_), 0.0);
     right_.assign(static_cast<std::size_t>(rows_) * kRight, 0.0);
   }
@@ -48,32 +48,36 @@ class BandedSystem {
   }
 
  private:
-  double& band(int row, int column) noexcept {
-    return band_[static_cast<std::size_t>(row) * kBand +
-                 static_cast<std::size_t>(kBand - 1 - (row - column))];
+  double& band(int row, int column) noexcept { return band_row(row)[kBand - 1 - (row - column)]; }
+  /// Entries of columns row - kBand + 1 .. row; valid from row 1 - kBand on.
+  double* band_row(int row) noexcept {
+    return band_.data() + static_cast<std::ptrdiff_t>(row + kBand - 1) * kBand;
   }
   double& border(int row, int column) noexcept {
     return border_rows_[static_cast<std::size_t>(row) * static_cast<std::size_t>(rows_) +
                         static_cast<std::size_t>(column)];
   }
 
-  /// Cholesky of the banded part, diagonal kept as its reciprocal, and forward substitution.
+  /// Cholesky of the banded part, diagonal kept as its reciprocal, and forward substitution. Rows
+  /// of zeros in front make all loops the same length.
   bool factor_band() noexcept {
     for (int r = 0; r < inner_; ++r) {
-      const int low = std::max(0, r - kBand + 1);
-      for (int c = low; c < r; ++c) {
-        double sum = band(r, c);
-        for (int k = std::max(low, c - kBand + 1); k < c; ++k) sum -= band(r, k) * band(c, k);
-        band(r, c) = sum * band(c, c);
+      double* row = band_row(r);
+      double diagonal = row[kBand - 1];
+      for (int c = 0; c < kBand - 1; ++c) {
+        const double* other = band_row(r - kBand + 1 + c) + (kBand - 1 - c);
+        double sum = row[c];
+        for (int k = 0; k < c; ++k) sum -= row[k] * other[k];
+        row[c] = sum * other[c];
+        diagonal -= row[c] * row[c];
       }
-      double diagonal = band(r, r);
-      for (int k = low; k < r; ++k) diagonal -= band(r, k) * band(r, k);
       if (!(diagonal > 0)) return false;
-      band(r, r) = 1.0 / std::sqrt(diagonal);
+      row[kBand - 1] = 1.0 / std::sqrt(diagonal);
+      const int low = std::max(0, r - kBand + 1);
       for (int q = 0; q < kRight; ++q) {
         double sum = right(r, q);
         for (int k = low; k < r; ++k) sum -= band(r, k) * right(k, q);
-        right(r, q) = sum * band(r, r);
+        right(r, q) = sum * row[kBand - 1];
       }
     }
     return true;
@@ -120,7 +124,7 @@ class BandedSystem {
   int rows_ = 0;
   int border_ = 0;
   int inner_ = 0;
-  std::vector<double> band_;         // inner_ rows of kBand entries, the diagonal last
+  std::vector<double> band_;         // kBand - 1 rows of zeros, inner_ rows, the diagonal last
   std::vector<double> border_rows_;  // border_ rows of rows_ entries
   std::vector<double> right_;
 };

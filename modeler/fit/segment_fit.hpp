@@ -36,8 +36,7 @@ struct Segment {
 ///     sample is within tolerance (reach_tolerance);
 ///  5. failing that, knots at the samples themselves, up to interpolation (interpolate);
 ///  6. windows of spans that can do with one span less lose it, and those that then fail get it
-///  back
-///     (remove_knots).
+///     back (remove_knots).
 ///
 /// Each pass is linear in samples and spans, and their number is bounded. All lengths and the
 /// tolerance are in one unit; the caller scales them so that no square over- or underflows.
@@ -103,9 +102,10 @@ class SegmentFitter {
     constexpr double kLeastWeight = 0.3;
     constexpr double kMostWeight = 4.0;
     worst_ = spline_.project(samples_);
+    const double scale = 1.0 / (tolerance_ * tolerance_);
     for (std::size_t i = 0; i < sample_count(); ++i) {
-      const double x = samples_.error[i] / tolerance_;
-      samples_.weight[i] = kLeastWeight + std::min(x * x, kMostWeight);
+      const double x2 = samples_.squared_error[i] * scale;
+      samples_.weight[i] = kLeastWeight + std::min(x2, kMostWeight);
     }
   }
 
@@ -113,6 +113,10 @@ class SegmentFitter {
     if (!solve(tangential)) return false;
     project();
     return true;
+  }
+
+  bool fails_at(std::size_t i) const noexcept {
+    return samples_.squared_error[i] > tolerance_ * tolerance_;
   }
 
   double trusted_sliding() const noexcept {
@@ -142,8 +146,9 @@ class SegmentFitter {
     std::size_t s = 0;
     for (std::size_t i = 0; i < sample_count(); ++i) {
       while (s + 2 < breaks.size() && samples_.u[i] >= breaks[s + 1]) ++s;
-      errors[s] = std::max(errors[s], samples_.error[i]);
+      errors[s] = std::max(errors[s], samples_.squared_error[i]);
     }
+    for (double& e : errors) e = std::sqrt(e);
     return errors;
   }
 
@@ -162,6 +167,10 @@ class SegmentFitter {
   void set_breaks_at(const std::vector<std::size_t>& sites, const std::vector<double>& parameters);
   bool split_failing_sites(std::vector<std::size_t>& sites) const;
   void follow_bends();
+  /// Turning of the curve between neighbouring samples, radians: the chord for the arc.
+  double turning(std::size_t i, std::size_t next) const noexcept {
+    return (samples_.tangent[next] - samples_.tangent[i]).norm();
+  }
   std::vector<double> bends() const;
   void estimate_noise();
   std::vector<double> masses_by_shape() const;
@@ -220,7 +229,7 @@ bool SegmentFitter<kDimension>::split_failing_sites(std::vector<std::size_t>& si
   for (std::size_t j = 0; j + 1 < sites.size(); ++j) {
     const std::size_t last = std::min(sites[j + 1], sample_count() - 1);
     bool fails = false;
-    for (std::size_t i = sites[j]; i <= last; ++i) fails |= samples_.error[i] > tolerance_;
+    for (std::size_t i = sites[j]; i <= last; ++i) fails |= fails_at(i);
     if (fails && sites[j + 1] - sites[j] > 1) next.push_back((sites[j] + sites[j + 1]) / 2);
     next.push_back(sites[j + 1]);
   }
@@ -265,8 +274,7 @@ std::vector<double> SegmentFitter<kDimension>::bends() const {
   std::vector<double> passed = {0.0};
   for (std::size_t i = 0; i < legs; ++i) {
     const std::size_t next = i + 1 < sample_count() ? i + 1 : 0;
-    const double cosine = samples_.tangent[i].dot(samples_.tangent[next]);
-    turned.push_back(turned.back() + std::acos(std::clamp(cosine, -1.0, 1.0)));
+    turned.push_back(turned.back() + turning(i, next));
     const double leg = next == 0 ? end_parameter(samples_.u) : samples_.u[next];
     passed.push_back(passed.back() + leg - samples_.u[i]);
   }
@@ -296,12 +304,11 @@ void SegmentFitter<kDimension>::follow_bends() {
   const std::vector<double> old = samples_.u;
   const double length = end_parameter(old);
   const auto leg_end = [&](std::size_t i) { return i + 1 < old.size() ? old[i + 1] : length; };
-  double turning = kLeastTurning;
-  for (std::size_t i = 0; i < curvature.size(); ++i)
-    turning += curvature[i] * (leg_end(i) - old[i]);
+  double turned = kLeastTurning;
+  for (std::size_t i = 0; i < curvature.size(); ++i) turned += curvature[i] * (leg_end(i) - old[i]);
   std::vector<double> mapped = {0.0};
   for (std::size_t i = 0; i < curvature.size(); ++i) {
-    const double relative = curvature[i] * length / turning;
+    const double relative = curvature[i] * length / turned;
     const double leg = leg_end(i) - old[i];
     mapped.push_back(mapped.back() +
                      std::max(std::pow(relative + kFloor, kPower) * leg, least_gap_));
@@ -334,7 +341,7 @@ void SegmentFitter<kDimension>::estimate_noise() {
   constexpr double kDeviations = 2.5;  // a span's largest error is some 2 or 3 of them
   constexpr double kMostShare = 0.5;   // of the tolerance; above, one fits noise in any case
   double sum = 0;
-  for (const double e : samples_.error) sum += e * e;
+  for (const double e2 : samples_.squared_error) sum += e2;
   const double rms = std::sqrt(sum / static_cast<double>(sample_count()));
   noise_ = std::min(kDeviations * rms, kMostShare * tolerance_);
 }
@@ -368,8 +375,7 @@ std::vector<double> SegmentFitter<kDimension>::masses_by_shape() const {
   std::size_t s = 0;
   for (std::size_t i = 0; i + 1 < sample_count(); ++i) {
     while (s + 1 < count && samples_.u[i] >= breaks[s + 1]) ++s;
-    const double cosine = samples_.tangent[i].dot(samples_.tangent[i + 1]);
-    mass[s] += std::acos(std::clamp(cosine, -1.0, 1.0)) / kMostTurning;
+    mass[s] += turning(i, i + 1) / kMostTurning;
   }
   for (std::size_t j = 0; j < count; ++j) {
     const double h = breaks[j + 1] - breaks[j];
@@ -567,7 +573,7 @@ bool SegmentFitter<kDimension>::restore_failing(Removal& removal) const {
     const bool last = &window == &removal.windows.back();
     bool fails = false;
     for (; i < sample_count() && (last || samples_.u[i] < end); ++i) {
-      fails |= samples_.error[i] > tolerance_;
+      fails |= fails_at(i);
     }
     if (window.shortened && fails) {
       window.breaks.assign(removal.old.begin() + window.range.begin,

@@ -34,13 +34,13 @@ struct SegmentSamples {
       : points(given),
         u(std::move(parameters)),
         weight(given.size(), 1.0),
-        error(given.size(), 0.0),
+        squared_error(given.size(), 0.0),
         tangent(given.size(), Point::Zero()) {}
 
   std::span<const Point> points;
   std::vector<double> u;
   std::vector<double> weight;
-  std::vector<double> error;   ///< distance from the curve, as of the last project() or measure()
+  std::vector<double> squared_error;  ///< distance from the curve, squared, as last measured
   std::vector<Point> tangent;  ///< unit tangent of the curve at u, zero where it stands still
 };
 
@@ -374,7 +374,7 @@ double SegmentSpline<kDimension>::project(Samples& samples) const {
   // Curvature may change the Newton step against the Gauss-Newton one by this factor at most.
   constexpr double kMostCurvature = 4.0;
   double floor = breaks_.front();  // keeps the order
-  double worst = 0;
+  double worst = 0;                // squared
   const std::size_t last = periodic_ ? samples.u.size() : samples.u.size() - 1;
   for_each_in_span(samples, [&](int s, std::size_t begin, std::size_t end) {
     const SpanCurve c = span_curve(s);
@@ -390,7 +390,7 @@ double SegmentSpline<kDimension>::project(Samples& samples) const {
       const double speed2 = first.squaredNorm();
       double step = 0;
       if (speed2 > 0) {
-        samples.tangent[i] = first / std::sqrt(speed2);
+        samples.tangent[i] = first * (1.0 / std::sqrt(speed2));
         double slope = speed2 + residual.dot(second);
         if (!(slope * kMostCurvature > speed2 && slope < kMostCurvature * speed2)) slope = speed2;
         step = std::clamp(-residual.dot(first) / slope, -longest, longest);
@@ -402,33 +402,33 @@ double SegmentSpline<kDimension>::project(Samples& samples) const {
       step = moved - samples.u[i];
       samples.u[i] = floor = moved;
       const double error2 = (residual + step * (first + 0.5 * step * second)).squaredNorm();
-      samples.error[i] = std::sqrt(error2);
-      worst = std::max(worst, samples.error[i]);
+      samples.squared_error[i] = error2;
+      worst = std::max(worst, error2);
     }
   });
-  return worst;
+  return std::sqrt(worst);
 }
 
 template <int kDimension>
 double SegmentSpline<kDimension>::measure(Samples& samples) const {
-  double worst = 0;
+  double worst = 0;  // squared
   for_each_in_span(samples, [&](int s, std::size_t begin, std::size_t end) {
     const SpanCurve c = span_curve(s);
     const double mid = middle(s);
     for (std::size_t i = begin; i < end; ++i) {
       const double h = samples.u[i] - mid;
       const Point value = c.power[0] + h * (c.power[1] + h * (c.power[2] + h * c.power[3]));
-      samples.error[i] = (value - samples.points[i]).norm();
-      worst = std::max(worst, samples.error[i]);
+      samples.squared_error[i] = (value - samples.points[i]).squaredNorm();
+      worst = std::max(worst, samples.squared_error[i]);
     }
   });
-  return worst;
+  return std::sqrt(worst);
 }
 
 template <int kDimension>
 double SegmentSpline<kDimension>::measure_between(Samples& samples, double tolerance) const {
   constexpr double kRise = 0.25;
-  double worst = 0;
+  double worst = 0;  // squared
   int span = 0;
   SpanCurve c = span_curve(span);
   for (std::size_t i = 0; i + 1 < samples.u.size(); ++i) {
@@ -445,12 +445,12 @@ double SegmentSpline<kDimension>::measure_between(Samples& samples, double toler
     const double share = std::clamp(leg.dot(off) / length2, 0.0, 1.0);
     const double distance2 = (off - share * leg).squaredNorm();
     if (distance2 <= allowed * allowed) continue;
-    const double error = tolerance * std::sqrt(distance2) / allowed;
-    samples.error[i] = std::max(samples.error[i], error);
-    samples.error[i + 1] = std::max(samples.error[i + 1], error);
-    worst = std::max(worst, error);
+    const double error2 = tolerance * tolerance * distance2 / (allowed * allowed);
+    samples.squared_error[i] = std::max(samples.squared_error[i], error2);
+    samples.squared_error[i + 1] = std::max(samples.squared_error[i + 1], error2);
+    worst = std::max(worst, error2);
   }
-  return worst;
+  return std::sqrt(worst);
 }
 
 }  // namespace limn::fit_detail
