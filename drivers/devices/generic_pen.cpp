@@ -28,6 +28,9 @@ struct Switches {
 
 Switches read_switches(const hid::PenLayout& layout, Bytes report) noexcept {
   Switches now;
+  now.in_range = is_set(layout.in_range, report) || is_set(layout.sense, report) ||
+                 (!layout.in_range && !layout.sense);
+  if (layout.transducer == hid::Transducer::kPuck) return now;  // it hovers, whatever it presses
   now.inverted = is_set(layout.invert, report);
   now.eraser = is_set(layout.eraser, report);
   if (layout.tip_switch) {
@@ -36,8 +39,6 @@ Switches read_switches(const hid::PenLayout& layout, Bytes report) noexcept {
     const auto& range = layout.pressure.reader.logical();
     now.tip = layout.pressure.reader.read(report).value_or(range.minimum) > range.minimum;
   }
-  now.in_range = is_set(layout.in_range, report) || is_set(layout.sense, report) ||
-                 (!layout.in_range && !layout.sense);
   return now;
 }
 
@@ -46,6 +47,12 @@ PenState state_of(const Switches& now) noexcept {
   if (now.eraser || (now.inverted && now.tip)) return PenState::kErasing;
   if (now.inverted) return PenState::kInRangeErasing;
   return now.tip ? PenState::kInContact : PenState::kInRange;
+}
+
+Tool tool_of(const hid::PenLayout& layout, PenState state) noexcept {
+  if (layout.transducer == hid::Transducer::kPuck) return Tool::kTabletMouse;
+  const bool erasing = state == PenState::kErasing || state == PenState::kInRangeErasing;
+  return erasing ? Tool::kEraser : Tool::kPen;
 }
 
 std::int32_t clamp_count(std::int64_t value) noexcept {
@@ -139,6 +146,12 @@ void set_serial(const hid::PenLayout& layout, Bytes report, PenSample& sample) n
 
 PenButtons read_buttons(const hid::PenLayout& layout, Bytes report) noexcept {
   unsigned pressed = 0;
+  if (layout.transducer == hid::Transducer::kPuck) {
+    for (std::size_t i = 0; i < layout.buttons.size(); ++i) {
+      if (is_set(layout.buttons[i], report)) pressed |= 1U << i;
+    }
+    return static_cast<PenButtons>(pressed);
+  }
   if (is_set(layout.barrel_switch, report)) pressed |= 1U;
   if (is_set(layout.secondary_barrel_switch, report)) pressed |= 2U;
   if (is_set(layout.barrel_switch3, report)) pressed |= 4U;
@@ -197,9 +210,7 @@ ReportClass GenericPen::decode(Bytes report, Timestamp time, PenOutput& out) noe
   PenSample sample;
   sample.time = time;
   sample.state = state_of(read_switches(*layout, report));
-  const bool erasing =
-      sample.state == PenState::kErasing || sample.state == PenState::kInRangeErasing;
-  sample.tool = erasing ? Tool::kEraser : Tool::kPen;
+  sample.tool = tool_of(*layout, sample.state);
   if (sample.state == PenState::kOutOfRange) sample.tool = out.machine().last().tool;
   sample.buttons = read_buttons(*layout, report);
   sample.lost = count_lost(*layout, report);

@@ -26,8 +26,8 @@ struct FitOptions {
 /// A curve through samples, and what it achieved. The deviations are those of `curve` as returned.
 template <int kDimension>
 struct CurveFit {
-  /// Cubic, C2 but for `corners`; a dot is degree 0 with one control point. Periodic exactly if
-  /// `closed`.
+  /// Cubic, C2 but for `corners`. A dot, whose samples all lie within tolerance of the middle of
+  /// their bounding box, is degree 0 with that one control point. Periodic exactly if `closed`.
   BsplineCurve<kDimension> curve;
   /// For each sample the parameter it belongs to: non-decreasing, within the domain.
   std::vector<double> sample_parameters;

@@ -167,9 +167,9 @@ class SegmentFitter {
   void set_breaks_at(const std::vector<std::size_t>& sites, const std::vector<double>& parameters);
   bool split_failing_sites(std::vector<std::size_t>& sites) const;
   void follow_bends();
-  /// Turning of the curve between neighbouring samples, radians: the chord for the arc.
+  /// Turning of the curve between neighbouring samples, radians.
   double turning(std::size_t i, std::size_t next) const noexcept {
-    return (samples_.tangent[next] - samples_.tangent[i]).norm();
+    return std::acos(std::clamp(samples_.tangent[i].dot(samples_.tangent[next]), -1.0, 1.0));
   }
   std::vector<double> bends() const;
   void estimate_noise();

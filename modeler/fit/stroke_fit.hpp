@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -42,8 +43,8 @@ class StrokeFitter {
                   "it is below what double precision resolves at these coordinates",
                   "raise the tolerance or move the samples nearer to the origin");
     }
+    if (auto fitted = dot()) return *std::move(fitted);
     merge_duplicates();
-    if (line_.size() == 1) return dot();
     closed_ = options_.allow_closing && is_closed(line_, tolerance_);
     find_corners();
     fit_segments();
@@ -76,7 +77,7 @@ class StrokeFitter {
   Expected<void> check_input() const;
   void choose_frame();
   void merge_duplicates();
-  Expected<CurveFit<kDimension>> dot() const;
+  std::optional<CurveFit<kDimension>> dot() const;
   void find_corners();
   void fit_segments();
   void fit_segment(std::size_t begin, std::size_t end);
@@ -180,11 +181,28 @@ void StrokeFitter<kDimension>::merge_duplicates() {
   parameters_.assign(line_.size(), 0.0);
 }
 
+/// One control point amid the samples, if it is within tolerance of them all.
 template <int kDimension>
-Expected<CurveFit<kDimension>> StrokeFitter<kDimension>::dot() const {
+std::optional<CurveFit<kDimension>> StrokeFitter<kDimension>::dot() const {
+  Point low = positions_[0];
+  Point high = positions_[0];
+  for (const Point& p : positions_) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Point amid = low + 0.5 * (high - low);
   CurveFit<kDimension> out;
-  auto curve = Curve::make(KnotVector(), {positions_[0]});
-  if (!curve) return tl::unexpected(std::move(curve.error()));
+  double squares = 0;
+  for (const Point& p : positions_) {
+    const double deviation2 = (p - amid).squaredNorm();
+    out.deviation_max = std::max(out.deviation_max, std::sqrt(deviation2));
+    if (out.deviation_max > options_.tolerance_mm) return std::nullopt;
+    squares += deviation2;
+  }
+  out.deviation_rms = std::sqrt(squares / static_cast<double>(positions_.size()));
+  out.polyline_deviation_max = out.deviation_max;
+  auto curve = Curve::make(KnotVector(), {amid});
+  if (!curve) return std::nullopt;
   out.curve = *std::move(curve);
   out.sample_parameters.assign(positions_.size(), out.curve.knots().domain_begin());
   return out;

@@ -190,6 +190,41 @@ TEST(GenericPen, AUselessSizeIsToldOnlyWhereAReportNeedsIt) {
   EXPECT_EQ(device.kind(), ReportClass::kUnknownId);
 }
 
+TEST(GenericPen, APuckIsATabletMouseThatHovers) {
+  // Puck: in range, Buttons 1 to 5, two bits of padding, X and Y.
+  const ReportBytes puck =
+      join({{0x05, 0x0D, 0x09, 0x02, 0xA1, 0x01, 0x85, 0x07, 0x09, 0x21, 0xA1, 0x00, 0x15,
+             0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x01, 0x09, 0x32, 0x81, 0x02, 0x05, 0x09,
+             0x19, 0x01, 0x29, 0x05, 0x95, 0x05, 0x81, 0x02, 0x95, 0x02, 0x81, 0x03},
+            kPosition,
+            kEnd});
+  DecodedDevice device(0x1234, 0x5678, puck);
+  const PenSample pressed = only(device({0x07, 0x01 | 0x02 | 0x20, 200, 0, 200, 0}));
+  EXPECT_EQ(pressed.tool, Tool::kTabletMouse);
+  EXPECT_EQ(pressed.state, PenState::kInRange);
+  EXPECT_EQ(pressed.buttons, 0x11);  // left and extra
+  EXPECT_DOUBLE_EQ(pressed.x_mm, 1);
+  const PenSample gone = only(device({0x07, 0x00, 200, 0, 200, 0}));
+  EXPECT_EQ(gone.state, PenState::kOutOfRange);
+  EXPECT_EQ(gone.tool, Tool::kTabletMouse);
+}
+
+TEST(GenericPen, ReportsMissingFromTheSequenceAreCounted) {
+  // Wacom's Sequence Number, 16 bits, after the position.
+  const ReportBytes sequence = {0x06, 0x0D, 0xFF, 0x15, 0x00, 0x27, 0xFF, 0xFF, 0x00, 0x00,
+                                0x75, 0x10, 0x95, 0x01, 0x0A, 0x20, 0x02, 0x81, 0x02};
+  DecodedDevice device(0x1234, 0x5678, join({kPenBegin, kSwitches, kPosition, sequence, kEnd}));
+  const auto lost = [&](unsigned number) {
+    return only(device({0x07, kInRange, 200, 0, 200, 0, static_cast<std::uint8_t>(number),
+                        static_cast<std::uint8_t>(number >> 8)}))
+        .lost;
+  };
+  EXPECT_EQ(lost(0xFFFC), 0U);  // the first: nothing is known to be missing
+  EXPECT_EQ(lost(0xFFFD), 0U);
+  EXPECT_EQ(lost(0xFFFD), 0U);  // repeated
+  EXPECT_EQ(lost(0x0001), 3U);  // FFFE, FFFF and 0
+}
+
 TEST(GenericPen, TouchCollectionsGiveNoPenSamples) {
   // A touch screen: one finger with tip, X and Y.
   const ReportBytes touch_screen = join({{0x05, 0x0D, 0x09, 0x04, 0xA1, 0x01, 0x85, 0x07, 0x09,
