@@ -196,11 +196,13 @@ Expected<std::vector<TraceDevice>> read_descriptors(std::unique_ptr<ByteSource> 
     return fail(ErrorCode::kSyntax, "byte " + std::to_string(peeked->leading_nuls()),
                 "there is no content", std::string(kRemedy));
   }
-  if (is_binary(peeked->window())) return read_binary(*peeked);
+  const bool binary = is_binary(peeked->window());
   const auto format = detect_format(*peeked);
   if (!format) return tl::unexpected(format.error());
   // Rows of hexadecimal bytes with commas pass for stroke CSV, which has no descriptors anyway.
-  if (!*format || **format == TraceFormat::kStrokeCsv) return read_hex_text(std::move(peeked));
+  const bool recording = *format && **format != TraceFormat::kStrokeCsv;
+  if (!recording && binary) return read_binary(*peeked);
+  if (!recording) return read_hex_text(std::move(peeked));
   return read_recording(std::move(peeked), options.salvage);
 }
 

@@ -179,5 +179,10 @@ TEST(DescriptorFile, ReadsTheDescriptorsThatLieBesideRealDumps) {
   EXPECT_GE(devices_read, 27U);
 }
 
+TEST(DescriptorFile, AControlByteMakesARecordingNoRawDescriptor) {
+  EXPECT_EQ(only_descriptor("N: pen\x01\nR: 3 05 0d c0\n"),
+            (std::vector<std::uint8_t>{0x05, 0x0D, 0xC0}));
+}
+
 }  // namespace
 }  // namespace limn::test
