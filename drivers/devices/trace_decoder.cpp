@@ -1,10 +1,21 @@
 #include "drivers/devices/trace_decoder.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <limits>
 #include <numeric>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace limn {
+namespace {
+
+std::uint32_t saturated_sum(std::uint32_t a, std::uint32_t b) noexcept {
+  return a + std::min(b, std::numeric_limits<std::uint32_t>::max() - a);
+}
+
+}  // namespace
 
 struct TraceDecoder::Device {
   TraceDevice described;
@@ -15,6 +26,7 @@ struct TraceDecoder::Device {
   bool refused = false;               // salvaging: nothing can be decoded
   std::uint64_t repaired_before = 0;  // by decoders that a new description replaced
   Timestamp last_time{};
+  std::uint32_t lost = 0;  // to be told with the next sample
 
   std::uint64_t repaired_now() const noexcept {
     return (reports ? reports->repaired_transitions() : 0) +
@@ -55,6 +67,7 @@ Expected<const PenSample*> TraceDecoder::next() {
   sample_ = pending_.front();
   sample_.time -= start_.value_or(Timestamp{});
   pending_ = pending_.subspan(1);
+  sample_.lost = saturated_sum(sample_.lost, std::exchange(pending_from_->lost, 0));
   ++samples_;
   return &sample_;
 }
@@ -157,11 +170,29 @@ TraceDecoder::Step TraceDecoder::take(const PenSample& sample) {
   return {};
 }
 
-TraceDecoder::Step TraceDecoder::take(const TraceNote&) { return {}; }
+TraceDecoder::Step TraceDecoder::take(const TraceNote& note) {
+  constexpr std::string_view kLost = "lost ";
+  if (note.text.substr(0, kLost.size()) != kLost) return {};
+  std::uint32_t count = 0;
+  const char* const end = note.text.data() + note.text.size();
+  const auto parsed = std::from_chars(note.text.data() + kLost.size(), end, count);
+  if (parsed.ec != std::errc{} || parsed.ptr != end) return {};
+  return lose({note.device, count});
+}
 
 TraceDecoder::Step TraceDecoder::take(const TraceDamage& damage) {
   ++damaged_parts_;
   if (damage_.size() < TraceSummary::kDamageKept) damage_.push_back(damage.error);
+  for (const LostReports& reports : damage.lost) {
+    if (auto known = lose(reports); !known) return known;
+  }
+  return {};
+}
+
+TraceDecoder::Step TraceDecoder::lose(const LostReports& reports) {
+  auto found = device(reports.device);
+  if (!found) return tl::unexpected(std::move(found.error()));
+  (*found)->lost = saturated_sum((*found)->lost, reports.count);
   return {};
 }
 
@@ -189,6 +220,7 @@ TraceDecoder::Step TraceDecoder::prepare(Device& device) {
   device.frames.reset();
   auto decoder = PenDecoder::make(device.described.vendor, device.described.product,
                                   device.described.report_descriptor);
+  device.described.report_descriptor = {};  // a decoder is made once a description
   if (!decoder) return refuse(device, std::move(decoder.error()));
   device.reports.emplace(std::move(*decoder));
   const PenSpec* spec = device.reports->spec();
@@ -245,6 +277,7 @@ void TraceDecoder::give(Device& device, std::span<const PenSample> samples,
   device.last_time = time;
   device.summary.samples += samples.size();
   pending_ = samples;
+  pending_from_ = &device;
 }
 
 }  // namespace limn

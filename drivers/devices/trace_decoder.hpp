@@ -56,7 +56,8 @@ struct TraceDecoderOptions {
 };
 
 /// Trace -> PenSamples of all its devices, in file order, pulled one by one. Sample times are the
-/// file's minus that of its first report, frame or sample. Constant memory.
+/// file's minus that of its first report, frame or sample. What the trace tells of missing reports
+/// (TraceDamage, "lost N" notes) is added to `lost` of their device's next sample. Constant memory.
 ///
 ///     TraceDecoder decoder(std::move(reader));
 ///     for (;;) {
@@ -83,7 +84,7 @@ class TraceDecoder {
   /// What was seen so far.
   TraceSummary summary() const;
 
-  static constexpr std::size_t kMaxDevices = 256;
+  static constexpr std::size_t kMaxDevices = kMaxTraceDevices;
 
  private:
   struct Device;
@@ -93,6 +94,7 @@ class TraceDecoder {
   TraceDecoderOptions options_;
   std::vector<std::unique_ptr<Device>> devices_;
   std::span<const PenSample> pending_;
+  Device* pending_from_ = nullptr;
   PenSample sample_;
   std::optional<Timestamp> start_;
   std::optional<Error> error_;
@@ -109,6 +111,7 @@ class TraceDecoder {
   Step take(const TraceNote& note);
   Step take(const TraceDamage& damage);
 
+  Step lose(const LostReports& reports);
   Expected<Device*> device(DeviceIndex index);
   Step prepare(Device& device);
   Step prepare_kernel(Device& device);

@@ -19,8 +19,6 @@ std::string_view without_comment(std::string_view text) {
   return text.substr(0, std::min(text.find('#'), text.size()));
 }
 
-bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
-
 }  // namespace
 
 EvemuReader::EvemuReader(std::unique_ptr<ByteSource> bytes, TraceOptions options)
@@ -31,7 +29,7 @@ EvemuReader::EvemuReader(std::unique_ptr<ByteSource> bytes, TraceOptions options
 Expected<void> EvemuReader::take(const Line& line) {
   const std::string_view text = line.text;
   if (text.empty() || text[0] == '#' || text::trimmed(text).empty()) return {};
-  const bool keyed = text.size() >= 2 && text[1] == ':' && is_letter(text[0]);
+  const bool keyed = text.size() >= 2 && text[1] == ':' && text::is_letter(text[0]);
   if (keyed && text[0] == 'E') return take_event(text.substr(2), line.terminated);
   if (!line.terminated) return cut_short();
   if (!keyed) {
@@ -57,10 +55,7 @@ TraceDevice& EvemuReader::description() {
   return device_.description;
 }
 
-void EvemuReader::announce() {
-  device_.announced = true;
-  emit(DeviceDescribed{&device_.description});
-}
+void EvemuReader::announce() { emit(devices_.announce(device_)); }
 
 Expected<void> EvemuReader::take_name(std::string_view rest) {
   rest = text::trimmed(rest);
@@ -170,6 +165,7 @@ Expected<void> EvemuReader::finish() {
 void EvemuReader::skipped(const Line& line) {
   const bool in_frame = !frame_.empty() && !frame_sent_;
   if (!in_frame && !device_.last && line.text.substr(0, 2) != "E:") return;  // still the header
+  if (!frame_damaged_) lose_report(device_.description.index);
   frame_.clear();
   frame_sent_ = false;
   frame_damaged_ = true;

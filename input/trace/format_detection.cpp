@@ -77,8 +77,7 @@ std::optional<TraceFormat> format_of_lines(std::string_view text, bool whole) {
 }  // namespace
 
 std::optional<TraceFormat> format_of_line(std::string_view line) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (starts_with(line, kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+  if (starts_with(line, text::kByteOrderMark)) line.remove_prefix(text::kByteOrderMark.size());
   if (starts_with(line, "# EVEMU")) return TraceFormat::kEvemu;
   if (starts_with(line, "#limn")) return TraceFormat::kHidRecorder;
   if (line.size() >= 2 && line[1] == ':') {

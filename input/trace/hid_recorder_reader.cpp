@@ -9,14 +9,12 @@ namespace {
 
 constexpr std::string_view kNotePrefix = "#limn";
 
-bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
-
 /// "key:" at the start of a line, for keys of letters only.
 bool is_keyed(std::string_view line) {
   const std::size_t colon = line.find(':');
   if (colon == 0 || colon == std::string_view::npos) return false;
   for (const char c : line.substr(0, colon)) {
-    if (!is_letter(c)) return false;
+    if (!text::is_letter(c)) return false;
   }
   return true;
 }
@@ -39,8 +37,8 @@ Expected<void> HidRecorderReader::take(const Line& line) {
 }
 
 Expected<void> HidRecorderReader::take_keyed(char key, std::string_view rest, bool terminated) {
-  switch (
-      key) {  // these prove themselves whole: their length is in them, or their digits are fixed
+  // These prove themselves whole: their length is in them, or their digits are fixed.
+  switch (key) {
     case 'E':
       return take_event(rest);
     case 'R':
@@ -59,7 +57,7 @@ Expected<void> HidRecorderReader::take_keyed(char key, std::string_view rest, bo
     case 'P':
       return take_text(&TraceDevice::physical_path, rest);
     default:
-      if (is_letter(key)) return {};
+      if (text::is_letter(key)) return {};
       return damaged(text::quoted(std::string(1, key)) + " is no prefix of a hid-recorder line");
   }
 }
@@ -71,7 +69,7 @@ Expected<void> HidRecorderReader::take_comment(const Line& line) {
   if (!rest.empty() && !text::is_blank(rest[0])) return {};
   if (!line.terminated) return cut_short();
   if (!rest.empty()) rest.remove_prefix(1);
-  emit(TraceNote{rest});
+  emit(TraceNote{rest, selected_index()});
   return {};
 }
 
@@ -99,6 +97,10 @@ Expected<TraceDevice*> HidRecorderReader::description() {
   }
   device_->announced = false;
   return &device_->description;
+}
+
+DeviceIndex HidRecorderReader::selected_index() const noexcept {
+  return device_ == nullptr ? 0 : device_->description.index;
 }
 
 void HidRecorderReader::announce() { emit(devices_.announce(*device_)); }
@@ -193,6 +195,7 @@ Expected<void> HidRecorderReader::finish() {
 /// does and is all text.
 void HidRecorderReader::skipped(const Line& line) {
   const std::string_view key = line.text.substr(0, 2);
+  if (key == "E:" && !device_lost_) lose_report(selected_index());
   const bool report =
       key == "E:" && !line.too_long && line.text.find('\0') == std::string_view::npos;
   if (key == "D:" || (!report && devices_.size() > 1)) device_lost_ = true;

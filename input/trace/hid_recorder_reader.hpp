@@ -32,6 +32,7 @@ class HidRecorderReader final : public LineTraceReader {
   Expected<std::size_t> take_bytes(std::string_view rest, std::size_t limit);
   Expected<void> select(DeviceIndex index);
   Expected<TraceDevice*> description();
+  DeviceIndex selected_index() const noexcept;
   void announce();
 
   DeviceTable devices_;

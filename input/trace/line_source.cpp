@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "input/trace/text.hpp"
+
 namespace limn {
-namespace {
-
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-}  // namespace
 
 Expected<std::optional<Line>> LineSource::next() {
   if (in_long_line_) {
@@ -44,8 +41,9 @@ Line LineSource::cut(std::size_t size, std::size_t line_end) {
   line.offset = offset_;
   begin_ += size + line_end;
   offset_ += size + line_end;
-  if (line.number == 1 && line.text.substr(0, kByteOrderMark.size()) == kByteOrderMark) {
-    line.text.remove_prefix(kByteOrderMark.size());
+  if (line.number == 1 &&
+      line.text.substr(0, text::kByteOrderMark.size()) == text::kByteOrderMark) {
+    line.text.remove_prefix(text::kByteOrderMark.size());
   }
   if (!line.text.empty() && line.text.back() == '\r') line.text.remove_suffix(1);
   return line;

@@ -1,7 +1,9 @@
 #include "input/trace/line_trace_reader.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "input/base/expect.hpp"
 #include "input/trace/text.hpp"
 
 namespace limn {
@@ -84,8 +86,21 @@ tl::unexpected<Error> LineTraceReader::cut_short() const {
 }
 
 void LineTraceReader::add_damage(Error error, std::uint64_t lines) {
-  if (!damage_) damage_ = Damage{std::move(error), number_, 0};
+  if (!damage_) damage_ = Damage{std::move(error), number_, 0, {}};
   damage_->lines += lines;
+}
+
+void LineTraceReader::lose_report(DeviceIndex device) {
+  LIMN_EXPECT(damage_.has_value());
+  std::vector<LostReports>& lost = damage_->lost;
+  const auto known = std::find_if(lost.begin(), lost.end(), [device](const LostReports& reports) {
+    return reports.device == device;
+  });
+  if (known != lost.end()) {
+    ++known->count;
+  } else if (lost.size() < kMaxTraceDevices) {
+    lost.push_back({device, 1});
+  }
 }
 
 void LineTraceReader::emit_damage() {
@@ -94,7 +109,7 @@ void LineTraceReader::emit_damage() {
   damage_.reset();
   damage.error.what += " (" + text::counted(damage.lines, "line") + " skipped)";
   damage.error.remedy = "the rest is read; look at what comes just after it with care";
-  queue_.push_back({TraceDamage{std::move(damage.error)}, damage.line});
+  queue_.push_back({TraceDamage{std::move(damage.error), std::move(damage.lost)}, damage.line});
 }
 
 }  // namespace limn

@@ -29,13 +29,17 @@ class LineTraceReader : public TraceReader {
   /// Called once, after the last line. An error is damage.
   virtual Expected<void> finish() = 0;
 
-  /// `line` is damaged and was skipped (salvage only): forget what depended on it.
+  /// `line` is damaged and was skipped (salvage only): forget what depended on it, and say what was
+  /// lost with it by lose_report().
   virtual void skipped(const Line& line) = 0;
 
   /// Queues an event that stands in line `number`, by default the one in hand. What it borrows must
   /// outlive the call of take() that emits it until the next call of take().
   void emit(TraceEvent event);
   void emit(TraceEvent event, std::uint64_t number);
+
+  /// A report of `device` was part of what is skipped. To be called in skipped() only.
+  void lose_report(DeviceIndex device);
 
   std::uint64_t line_number() const noexcept { return number_; }
 
@@ -54,6 +58,7 @@ class LineTraceReader : public TraceReader {
     Error error;
     std::uint64_t line;
     std::uint64_t lines;
+    std::vector<LostReports> lost;
   };
 
   Expected<void> step();

@@ -107,6 +107,20 @@ bool is_stroke_csv_row(std::string_view line) {
                      [](std::string_view field) { return text::parse_real(field).has_value(); });
 }
 
+void FixedDecimals::take(std::string_view number) noexcept {
+  const std::size_t count = decimals(number);
+  varying_ = varying_ || (alike_ > 0 && count != decimals_);
+  decimals_ = count;
+  ++alike_;
+}
+
+bool FixedDecimals::lacks_digits(std::string_view number) const noexcept {
+  // Where trailing zeros are left out, one number in ten is shorter: this many of one length by
+  // chance are one in eight hundred.
+  constexpr std::uint64_t kTelling = 64;
+  return !varying_ && alike_ >= kTelling && decimals(number) < decimals_;
+}
+
 StrokeCsvReader::StrokeCsvReader(std::unique_ptr<ByteSource> bytes, const TraceOptions& options)
     : LineTraceReader(std::move(bytes), options.salvage) {}
 
@@ -144,11 +158,9 @@ Expected<void> StrokeCsvReader::take_row(std::string_view text, bool terminated)
     if (!value) return tl::unexpected(value.error());
     values[i] = *value;
   }
-  // A last line without a line end is usual in CSV, but may also have lost digits of its last
-  // number.
-  const std::size_t digits = decimals(fields.text[fields.count - 1]);
-  if (!terminated && decimals_ && digits < *decimals_) return cut_short();
-  decimals_ = std::min(digits, decimals_.value_or(digits));
+  const std::string_view last_word = fields.text[fields.count - 1];
+  if (!terminated && widths_.lacks_digits(last_word)) return cut_short();
+  widths_.take(last_word);
   if (last_ && *time < *last_) {
     return damaged("the time " + text::quoted(word) + " is before that of the row before it",
                    ErrorCode::kOutOfRange);
@@ -168,6 +180,9 @@ Expected<double> StrokeCsvReader::take_number(std::size_t column, std::string_vi
                  ErrorCode::kOutOfRange);
 }
 
-void StrokeCsvReader::skipped(const Line&) {}
+void StrokeCsvReader::skipped(const Line& line) {
+  const bool header = columns_ == 0 && text::trimmed(line.text).substr(0, 1) == "t";
+  if (!header) lose_report(0);
+}
 
 }  // namespace limn

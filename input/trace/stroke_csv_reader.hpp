@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -11,6 +12,21 @@ namespace limn {
 
 /// Whether the line is the header of a stroke CSV file, or a row of as many numbers as one has.
 bool is_stroke_csv_row(std::string_view line);
+
+/// Whether a column's numbers all have the same number of decimals. A last line without a line end
+/// is usual in CSV and may be whole; that it lost digits shows only in such a column.
+class FixedDecimals {
+ public:
+  void take(std::string_view number) noexcept;
+
+  /// Enough numbers before `number` had one length, and it has fewer decimals.
+  bool lacks_digits(std::string_view number) const noexcept;
+
+ private:
+  std::uint64_t alike_ = 0;
+  std::size_t decimals_ = 0;
+  bool varying_ = false;
+};
 
 /// Reads stroke CSV files, see TraceFormat::kStrokeCsv.
 class StrokeCsvReader final : public LineTraceReader {
@@ -27,9 +43,9 @@ class StrokeCsvReader final : public LineTraceReader {
   Expected<void> take_row(std::string_view text, bool terminated);
   Expected<double> take_number(std::size_t column, std::string_view word) const;
 
-  std::size_t columns_ = 0;              // 4 or 6; 0 before the first row
-  std::optional<Timestamp> last_;        // time of the last row
-  std::optional<std::size_t> decimals_;  // fewest so far in the last column
+  std::size_t columns_ = 0;        // 4 or 6; 0 before the first row
+  std::optional<Timestamp> last_;  // time of the last row
+  FixedDecimals widths_;           // of the last column
 };
 
 }  // namespace limn

@@ -16,6 +16,13 @@ namespace limn::text {
 
 constexpr bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
 
+constexpr bool is_letter(char c) noexcept {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+}
+
+/// What may stand before the first line of a UTF-8 file.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 /// Without blanks at both ends.
 std::string_view trimmed(std::string_view text) noexcept;
 

@@ -23,7 +23,8 @@ namespace limn {
 ///               `P:`, `I:` describe it; `E: sec.usec length bytes` is a report. Other prefixes and
 ///               prose (the recorder's prompts) are passed over.
 /// kUsbhidDump   `[BUS:DEVICE:]INTERFACE:STREAM  sec.usec` (or DESCRIPTOR), then lines of up to 16
-///               bytes, ended by a blank line, the next header or the end. DeviceIndex is the
+///               bytes, ended by a blank line, the next header or the end; but a report whose last
+///               line is full may go on, so there the end alone is damage. DeviceIndex is the
 ///               interface number, plus 256 times the ordinal of the bus and device address.
 /// kEvemu        1.0 to 1.3, the version line optional; `N:`, `I:`, `P:`, `B:`, `A:` and `E:`.
 /// kStrokeCsv    `t,x,y,p[,alt,az]`: seconds, mm, mm, 0..1, degrees, degrees; the header line is
@@ -36,13 +37,13 @@ enum class TraceFormat { kHidRecorder, kUsbhidDump, kEvemu, kStrokeCsv };
 std::string_view name(TraceFormat format) noexcept;
 
 /// What a recording may hold at most; beyond, a kLimit error. With these a reader's memory is
-/// bounded: about 1 MB, plus the descriptors, together at most 16 MB.
+/// bounded: about 1 MB, plus the descriptors, together at most 4 MB.
 inline constexpr std::size_t kMaxLineBytes = std::size_t{256} * 1024;
 inline constexpr std::size_t kMaxDescriptorBytes = 65535;  // wDescriptorLength has 16 bits
 inline constexpr std::size_t kMaxReportBytes = 16384;      // Linux's HID_MAX_BUFFER_SIZE
 inline constexpr std::size_t kMaxDeviceTextBytes = 1024;   // a name, a physical path
 inline constexpr std::size_t kMaxFrameEvents = 4096;
-inline constexpr std::size_t kMaxTraceDevices = 256;
+inline constexpr std::size_t kMaxTraceDevices = 64;
 
 /// Range of one kernel-decoded absolute axis (evemu's A: line). Resolution in units per mm (per
 /// radian for tilt); 0 where the kernel did not know it.
@@ -92,15 +93,25 @@ struct EvdevFrame {
 };
 
 /// A "#limn" comment line of a hid-recorder file, without that prefix and the blank after it: an
-/// event beside the reports (loss, hot-plug). Borrowed until the reader's next call.
+/// event beside the reports of the selected device. "lost N" says that N of its reports are missing
+/// here. Borrowed until the reader's next call.
 struct TraceNote {
   std::string_view text;
+  DeviceIndex device = 0;
+};
+
+/// Reports (frames, rows) of one device that are known to be missing.
+struct LostReports {
+  DeviceIndex device = 0;
+  std::uint32_t count = 0;
 };
 
 /// A part of the file that TraceOptions::salvage skipped: everything damaged between the event
 /// before and the event after. `error` is that of the first damage and says how many lines went.
 struct TraceDamage {
   Error error;
+  /// What of that were reports whose device is known, one entry a device.
+  std::vector<LostReports> lost;
 };
 
 struct TraceEnd {};

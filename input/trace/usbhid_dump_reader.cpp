@@ -76,7 +76,6 @@ Expected<void> UsbhidDumpReader::take(const Line& line) {
 
 Expected<void> UsbhidDumpReader::take_header(std::string_view text) {
   if (record_.kind != RecordKind::kNone && record_.size == 0) {
-    record_ = {};
     return damaged("no bytes follow the record's first line before this one");
   }
   complete();
@@ -173,6 +172,13 @@ Expected<void> UsbhidDumpReader::finish() {
   return {};
 }
 
-void UsbhidDumpReader::skipped(const Line&) { record_ = {}; }
+void UsbhidDumpReader::skipped(const Line& line) {
+  const Record record = std::exchange(record_, Record{});
+  if (record.kind == RecordKind::kReport) lose_report(record.device->description.index);
+  auto address = parse_address(text::trimmed(line.text));
+  if (!address || text::take_word(address->rest) != "STREAM") return;
+  const auto found = device(address->bus, address->device, address->interface);
+  if (found) lose_report((*found)->description.index);
+}
 
 }  // namespace limn

@@ -195,6 +195,54 @@ TEST(TraceDecoder, KernelFramesNeedASize) {
   EXPECT_FALSE(decode_trace(sizeless, {}, true).failed);
 }
 
+std::vector<std::uint32_t> lost_of(const DecodedTrace& trace) {
+  std::vector<std::uint32_t> lost;
+  for (const PenSample& sample : trace.samples) lost.push_back(sample.lost);
+  return lost;
+}
+
+TEST(TraceDecoder, SkippedReportsAreToldWithTheNextSampleOfTheirDevice) {
+  const DecodedTrace trace = decode_trace(
+      "D: 0\nN: a\nI: 3 056a 0013\nD: 1\nN: b\nI: 3 056a 0013\n"
+      "E: 1.0 8 02 90 40 1f 20 03 00 00\n"
+      "D: 0\nE: 1.0 8 02 90 40\nE: 1.0 8 zz\n"
+      "D: 1\nE: 2.0 8 02 90 41 1f 20 03 00 00\n"
+      "D: 0\nE: 2.0 8 02 90 40 1f 20 03 00 00\nE: 2.5 8 02 90 41 1f 20 03 00 00\n",
+      {}, true);
+  ASSERT_FALSE(trace.failed) << trace.error.what;
+  EXPECT_EQ(lost_of(trace), (std::vector<std::uint32_t>{0, 0, 2, 0}));
+  EXPECT_EQ(trace.samples.at(2).device, 0U);
+}
+
+TEST(TraceDecoder, SkippedRecordsFramesAndRowsAreLostToo) {
+  const std::string bytes = "\n 02 90 40 1f 20 03 00 00\n\n";
+  const std::string damaged = "0:STREAM 3.0\n 02 Q\n\n0:STREAM 1.0" + bytes;
+  TraceOptions graphire;
+  graphire.supplied.vendor = 0x056A;
+  graphire.supplied.product = 0x0013;
+  const DecodedTrace dump =
+      decode_trace("0:STREAM 2.0" + bytes + damaged + "0:STREAM 3.0" + bytes, graphire, true);
+  EXPECT_EQ(lost_of(dump), (std::vector<std::uint32_t>{0, 2}));
+
+  const DecodedTrace frames = decode_trace(
+      "# EVEMU 1.3\nA: 00 0 1000 0 0 10\nA: 01 0 1000 0 0 10\nA: 18 0 255 0 0 0\n"
+      "E: 1.0 0003 0000 junk\nE: 1.0 0003 0001 5\nE: 1.0 0000 0000 0\n"
+      "E: 2.0 0003 0000 100\nE: 2.0 0001 0140 1\nE: 2.0 0000 0000 0\n",
+      {}, true);
+  EXPECT_EQ(lost_of(frames), (std::vector<std::uint32_t>{1}));
+
+  const DecodedTrace rows = decode_trace("t,x,y,p\n0,1,2,0.5\n1,1\n2,1\n3,1,2,0.5\n", {}, true);
+  EXPECT_EQ(lost_of(rows), (std::vector<std::uint32_t>{0, 2}));
+}
+
+TEST(TraceDecoder, NotesOfLostReportsAreToldWithTheNextSample) {
+  const DecodedTrace trace = decode_trace(
+      "N: a\nI: 3 056a 0013\n#limn lost 3\n#limn lost many\n#limn lost 4294967295\n"
+      "E: 1.0 8 02 90 40 1f 20 03 00 00\n#limn lost 2\nE: 2.0 8 02 90 41 1f 20 03 00 00\n");
+  ASSERT_FALSE(trace.failed) << trace.error.what;
+  EXPECT_EQ(lost_of(trace), (std::vector<std::uint32_t>{4294967295, 2}));
+}
+
 TEST(TraceDecoder, SalvagedDamageIsCountedAndTheFirstPartsAreKept) {
   std::string text = "N: pen\nI: 3 056a 0013\n";
   for (int i = 0; i < 40; ++i) text += "E: broken line\nE: 1.0 2 01 00\n";

@@ -181,5 +181,17 @@ TEST(EvemuReader, NulBytesBetweenFramesMayHideAFramesBeginning) {
   EXPECT_EQ(reading.frames[1].time_ns, 1'200'000'000);
 }
 
+TEST(EvemuReader, SuppliedIdsServeWhereTheTraceHasNone) {
+  TraceOptions options;
+  options.supplied.vendor = 0x056A;
+  options.supplied.product = 0x0304;
+  const std::string frame = "E: 1.0 0003 0000 1\nE: 1.0 0000 0000 0\n";
+  const Reading without = read_trace("# EVEMU 1.3\nN: pen\n" + frame, options);
+  EXPECT_EQ(without.devices.at(0).vendor, 0x056A);
+  EXPECT_EQ(without.devices.at(0).product, 0x0304);
+  const Reading with = read_trace("# EVEMU 1.3\nI: 3 1234 5678 0\n" + frame, options);
+  EXPECT_EQ(with.devices.at(0).vendor, 0x1234);
+}
+
 }  // namespace
 }  // namespace limn::test

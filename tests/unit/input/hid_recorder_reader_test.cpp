@@ -257,7 +257,7 @@ TEST(HidRecorderReader, DevicesNamesAndSizesAreLimited) {
   for (std::size_t i = 0; i <= kMaxTraceDevices; ++i) many += "D: " + std::to_string(i) + "\n";
   const Reading devices = read_trace(many);
   EXPECT_EQ(devices.order, std::string(kMaxTraceDevices, 'd') + "!");
-  EXPECT_EQ(at_and_what(devices.error), "line 257: more than 256 devices");
+  EXPECT_EQ(at_and_what(devices.error), "line 65: more than 64 devices");
   EXPECT_EQ(devices.error.code, ErrorCode::kLimit);
 
   const Reading name =

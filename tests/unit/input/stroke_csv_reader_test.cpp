@@ -111,13 +111,21 @@ TEST(StrokeCsvReader, OtherColumnsAreAnError) {
             "expected");
 }
 
-TEST(StrokeCsvReader, ALastRowWithoutALineEndMustNotLackDecimals) {
-  const std::string rows = "t,x,y,p\n0.0,1.0,2.0,0.5000\n0.1,1.0,2.0,0.51\n";
-  EXPECT_EQ(read_trace(rows + "0.2,1.0,2.0,0.52").order, "sss.");
+TEST(StrokeCsvReader, ALastRowWithoutALineEndMustNotLackTheDecimalsThatAllRowsHave) {
+  std::string rows = "t,x,y,p\n";
+  for (int i = 0; i < 64; ++i) rows += "0.1,1.0,2.0,0.51\n";
+  const std::string order(64, 's');
+  EXPECT_EQ(read_trace(rows + "0.2,1.0,2.0,0.52").order, order + "s.");
   const Reading cut = read_trace(rows + "0.2,1.0,2.0,0.5");
-  EXPECT_EQ(cut.order, "ss!");
-  EXPECT_EQ(cut.error.at, "line 4");
-  EXPECT_EQ(salvage_trace(rows + "0.2,1.0,2.0,0.5").order, "ssx.");
+  EXPECT_EQ(cut.order, order + "!");
+  EXPECT_EQ(cut.error.at, "line 66");
+  EXPECT_EQ(salvage_trace(rows + "0.2,1.0,2.0,0.5").order, order + "x.");
+  EXPECT_EQ(read_trace(rows + "0.1,1.0,2.0,0.5\n0.2,1.0,2.0,0.5").order, order + "ss.");
+}
+
+TEST(StrokeCsvReader, ALastRowWithoutALineEndIsWholeIfItsColumnsAre) {
+  const std::string rows = "t,x,y,p\n0.0,1.0,2.0,0.5\n0.1,1.0,2.0,0.55\n";
+  EXPECT_EQ(read_trace(rows + "0.2,1.0,2.0,1").order, "sss.");
   EXPECT_EQ(read_trace(rows + "0.2,1.0,2.0,").order, "ss!");
   EXPECT_EQ(read_trace(rows + "0.2,1.0").order, "ss!");
   EXPECT_EQ(read_trace("0,1,2,0\n1,1,2,1").order, "ss.");

@@ -81,6 +81,10 @@ TEST(TraceMemory, HidRecorderReportsCostNone) {
       "E: 1.000000 4 01 02 03 04\nD: 0\n#limn a note of more than sixteen bytes\n");
 }
 
+TEST(TraceMemory, SalvageCostsNoneWhereNothingIsDamaged) {
+  expect_no_allocation("R: 1 c0\n", "E: 1.000000 4 01 02 03 04\n", true);
+}
+
 TEST(TraceMemory, UsbhidDumpReportsCostNone) {
   expect_no_allocation("", "001:006:000:STREAM             1568360147.000001\n 09 80 86\n\n");
 }
