@@ -46,8 +46,10 @@ class CornerDetector {
       scale[i] = scale_at(i);
       if (const auto turn = turn_at(i, scale[i])) turning[i] = turn->angle;
     }
-    for (std::size_t i = 1; i + 1 < count; ++i) {
-      if (turning[i] >= angle_ && is_peak(turning, i, scale[i]) &&
+    for (std::size_t begin = 1, end = 1; begin + 1 < count; begin = end) {
+      end = run_end(turning, begin);
+      const std::size_t i = begin + (end - begin - 1) / 2;
+      if (turning[i] >= angle_ && is_peak(turning, begin, end, scale[i]) &&
           is_corner(i, scale[i], turning[i])) {
         corners.push_back(i);
       }
@@ -110,17 +112,27 @@ class CornerDetector {
     return std::max(scale_, std::sqrt(std::min(left, right)));
   }
 
-  /// Whether nothing within 2w along the path turns more.
-  bool is_peak(const std::vector<double>& turning, std::size_t i, double w) const {
+  /// End of the run of samples that turn as `begin` does: where a path returns on itself, all
+  /// within w of its tip turn by pi, and the tip is in their middle.
+  static std::size_t run_end(const std::vector<double>& turning, std::size_t begin) {
+    constexpr double kAlike = 1e-6;  // radians: rounding of an arc cosine near pi
+    std::size_t end = begin + 1;
+    while (end + 1 < turning.size() && std::abs(turning[end] - turning[begin]) <= kAlike) ++end;
+    return end;
+  }
+
+  /// Whether nothing within 2w along the path turns more than the samples begin .. end - 1 do.
+  bool is_peak(const std::vector<double>& turning, std::size_t begin, std::size_t end,
+               double w) const {
+    const std::size_t i = begin + (end - begin - 1) / 2;
     const double reach2 = 4 * w * w;
     const auto near = [&](std::size_t j) { return (path_[j] - path_[i]).squaredNorm() < reach2; };
     std::size_t steps = 0;
-    for (std::size_t j = i; j-- > 1 && near(j) && steps < kMostSteps; ++steps) {
+    for (std::size_t j = begin; j-- > 1 && near(j) && steps < kMostSteps; ++steps) {
       if (turning[j] >= turning[i]) return false;
     }
     steps = 0;
-    for (std::size_t j = i + 1; j + 1 < path_.size() && near(j) && steps < kMostSteps;
-         ++j, ++steps) {
+    for (std::size_t j = end; j + 1 < path_.size() && near(j) && steps < kMostSteps; ++j, ++steps) {
       if (turning[j] > turning[i]) return false;
     }
     return true;

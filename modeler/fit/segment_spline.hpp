@@ -431,11 +431,15 @@ double SegmentSpline<kDimension>::measure_between(Samples& samples, double toler
   double worst = 0;  // squared
   int span = 0;
   SpanCurve c = span_curve(span);
-  for (std::size_t i = 0; i + 1 < samples.u.size(); ++i) {
-    const Point leg = samples.points[i + 1] - samples.points[i];
+  const std::size_t legs = samples.u.size() - (periodic_ ? 0 : 1);
+  for (std::size_t i = 0; i < legs; ++i) {
+    const bool closing = i + 1 == samples.u.size();
+    const std::size_t next = closing ? 0 : i + 1;
+    const Point leg = samples.points[next] - samples.points[i];
     const double length2 = leg.squaredNorm();
+    if (!(length2 > 0)) continue;
     const double allowed = tolerance + kRise * std::sqrt(length2);
-    const double u = 0.5 * (samples.u[i] + samples.u[i + 1]);
+    const double u = 0.5 * (samples.u[i] + (closing ? breaks_.back() : samples.u[next]));
     while (span + 1 < spans() && u >= breaks_[static_cast<std::size_t>(span) + 1]) {
       c = span_curve(++span);
     }
@@ -447,7 +451,7 @@ double SegmentSpline<kDimension>::measure_between(Samples& samples, double toler
     if (distance2 <= allowed * allowed) continue;
     const double error2 = tolerance * tolerance * distance2 / (allowed * allowed);
     samples.squared_error[i] = std::max(samples.squared_error[i], error2);
-    samples.squared_error[i + 1] = std::max(samples.squared_error[i + 1], error2);
+    samples.squared_error[next] = std::max(samples.squared_error[next], error2);
     worst = std::max(worst, error2);
   }
   return std::sqrt(worst);

@@ -230,8 +230,9 @@ void StrokeFitter<kDimension>::find_corners() {
     cuts_.push_back(line_.size() - 1);
     return;
   }
-  // The two ends of a closed stroke are one place: a corner at the last point is one at the first.
-  if (!corners.empty() && corners.back() + 1 == line_.size()) {
+  // Where a closed stroke ends exactly where it began, a corner at the end is one at the beginning.
+  if (!corners.empty() && corners.back() + 1 == line_.size() &&
+      line_.points.back() == line_.points.front()) {
     corners.pop_back();
     if (corners.empty() || corners.front() != 0) corners.insert(corners.begin(), 0);
   }

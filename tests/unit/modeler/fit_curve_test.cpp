@@ -188,6 +188,34 @@ TEST(FitCurve, BacktrackingTurnsBackInACorner) {
   EXPECT_EQ(closed.corners.size(), 2u);
 }
 
+TEST(FitCurve, AReturnAtEvenSpeedTurnsAtItsTip) {
+  std::vector<Point> points;
+  for (int i = 0; i <= 40; ++i) points.emplace_back(0.5 * i, 0);
+  for (int i = 1; i <= 50; ++i) points.emplace_back(20 - 0.5 * i, 0);
+  const auto fitted = fit(points, within(0.05));
+  ASSERT_EQ(fitted.corners.size(), 1u);
+  EXPECT_NEAR(fitted.curve.point(fitted.corners[0]).x(), 20, 1e-9);
+}
+
+TEST(FitCurve, AClosedStrokeKeepsACornerAtItsLastSample) {
+  // A square of 20 mm from a step behind its first corner round to that corner.
+  const std::vector<Point> vertices = {{0, 0}, {20, 0}, {20, 20}, {0, 20}, {0, 0}};
+  std::vector<Point> points;
+  for (std::size_t side = 0; side + 1 < vertices.size(); ++side) {
+    for (int i = 1; i <= 40; ++i) {
+      points.push_back(vertices[side] + i / 40.0 * (vertices[side + 1] - vertices[side]));
+    }
+  }
+  const auto fitted = fit(points, within(0.05));
+  EXPECT_TRUE(fitted.closed);
+  ASSERT_EQ(fitted.corners.size(), 4u);
+  for (const double u : fitted.corners) {
+    const Point corner = fitted.curve.point(u);
+    EXPECT_NEAR(std::abs(corner.x() - 10), 10, 1e-9);
+    EXPECT_NEAR(std::abs(corner.y() - 10), 10, 1e-9);
+  }
+}
+
 TEST(FitCurve, RepeatedLapsAreAllDrawn) {
   FitOptions options = within(0.05);
   options.allow_closing = false;
