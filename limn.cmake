@@ -9,6 +9,10 @@ set(LIMN_WARNINGS
 # on every compiler: no fused multiply-add appears where the source has none.
 function(limn_set_flags target)
   target_compile_options(${target} PRIVATE ${LIMN_WARNINGS} -ffp-contract=off)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # GCC 12 sees overlaps in std::string's own code at -O2 and -O3 (GCC bug 105651).
+    target_compile_options(${target} PRIVATE -Wno-restrict)
+  endif()
   if(LIMN_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
@@ -69,10 +73,6 @@ function(limn_add_test name)
   # A test names enumerators of absent members often; conversions in its literals are no defects.
   target_compile_options(${name} PRIVATE -Wno-conversion -Wno-sign-conversion
                                          -Wno-double-promotion)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # GCC 12 sees overlaps in std::string's own code at -O2 and -O3 (GCC bug 105651).
-    target_compile_options(${name} PRIVATE -Wno-restrict)
-  endif()
   # Assertions are most of a test's code and need no optimiser: half the time to compile.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Debug>:-O0>)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})

@@ -2,21 +2,16 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <map>
 #include <string>
 
 #include "modeler/app/command.hpp"
+#include "modeler/app/option_values.hpp"
 
 namespace limn::app {
 namespace {
 
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
-
-const std::map<std::string, OutputFormat> kFormats = {{"text", OutputFormat::kText},
-                                                      {"json", OutputFormat::kJson},
-                                                      {"jsonl", OutputFormat::kJsonl},
-                                                      {"csv", OutputFormat::kCsv}};
 
 /// One line on standard error, whatever bytes file names and messages hold.
 void print_error(std::string line) {
@@ -35,22 +30,25 @@ std::string describe(const Failure& failure) {
   return line;
 }
 
-/// "VID:PID", hexadecimal, as lsusb prints it.
-std::string parse_id(const std::string& text, TraceArguments& trace) {
-  unsigned vendor = 0;
-  unsigned product = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%4x:%4x%c", &vendor, &product, &rest) != 2) {
-    return "'" + text + "' is no VID:PID of hexadecimal digits, such as 28bd:0905";
-  }
-  trace.vendor = static_cast<std::uint16_t>(vendor);
-  trace.product = static_cast<std::uint16_t>(product);
-  return {};
+/// An option whose text `parse` turns into a value: see option_values.hpp for what it returns.
+template <class Parse>
+CLI::Option* add_value(CLI::App& command, const std::string& name, Parse parse,
+                       const std::string& description) {
+  return command.add_option_function<std::string>(
+      name,
+      [name, parse](const std::string& text) {
+        if (const std::string wrong = parse(text); !wrong.empty()) {
+          throw CLI::ValidationError(name, wrong);
+        }
+      },
+      description);
 }
 
 void add_format(CLI::App& command, OutputFormat& format) {
-  command.add_option("--format", format, "What goes to standard output: text, json, jsonl or csv")
-      ->transform(CLI::CheckedTransformer(kFormats).description(""))
+  add_value(
+      command, "--format",
+      [&format](const std::string& text) { return parse_format(text, format); },
+      "What goes to standard output: text, json, jsonl or csv")
       ->type_name("FORMAT")
       ->default_str("text");
 }
@@ -66,15 +64,10 @@ void add_trace(CLI::App& command, TraceArguments& trace) {
       .add_option("--descriptor", trace.descriptor_path,
                   "The report descriptor, for recordings without one (usbhid-dump)")
       ->type_name("FILE");
-  command
-      .add_option_function<std::string>(
-          "--id",
-          [&trace](const std::string& text) {
-            if (const std::string wrong = parse_id(text, trace); !wrong.empty()) {
-              throw CLI::ValidationError("--id", wrong);
-            }
-          },
-          "USB vendor and product, for recordings without them")
+  add_value(
+      command, "--id",
+      [&trace](const std::string& text) { return parse_id(text, trace.vendor, trace.product); },
+      "USB vendor and product, for recordings without them")
       ->type_name("VID:PID");
   command.add_flag("--salvage", trace.salvage,
                    "Skip what is damaged and say how much, instead of stopping there");
@@ -112,12 +105,12 @@ int run(int argc, char** argv) {
   CLI::App* sketch_command = app.add_subcommand(
       "sketch", "Fit B-spline curves to a recording's strokes; draw them and export them");
   add_trace(*sketch_command, sketch.trace);
-  sketch_command
-      ->add_option("--tolerance", sketch.tolerance_mm,
-                   "Largest distance of a curve from any of its samples, in mm")
+  add_value(
+      *sketch_command, "--tolerance",
+      [&sketch](const std::string& text) { return parse_length(text, sketch.tolerance_mm); },
+      "Largest distance of a curve from any of its samples, in mm")
       ->type_name("MM")
-      ->check(CLI::PositiveNumber.description(""))
-      ->capture_default_str();
+      ->default_str("0.1");
   sketch_command
       ->add_option("-o,--output", sketch.outputs,
                    "Write a file, its type by extension: .svg .pdf .png .step .json; may be given "
@@ -137,15 +130,19 @@ int run(int argc, char** argv) {
       simulate_command->add_option("--drawing", simulate.drawing, "What it draws; see --list")
           ->type_name("NAME")
           ->capture_default_str();
-  simulate_command->add_option("--seed", simulate.seed, "Another seed is another hand's tremor")
-      ->type_name("N")
-      ->capture_default_str();
+  CLI::Option* seed = add_value(
+      *simulate_command, "--seed",
+      [&simulate](const std::string& text) { return parse_seed(text, simulate.seed); },
+      "The same seed gives the same sensor noise, so the same bytes");
+  seed->type_name("N")->default_str("1");
+  CLI::Option* output = simulate_command
+                            ->add_option("-o,--output", simulate.output,
+                                         "The hid-recorder file to write; - is standard output")
+                            ->type_name("TRACE");
   simulate_command->add_flag("--list", simulate.list, "List devices and drawings")
-      ->excludes(drawing);
-  simulate_command
-      ->add_option("-o,--output", simulate.output,
-                   "The hid-recorder file to write; - is standard output")
-      ->type_name("TRACE");
+      ->excludes(drawing)
+      ->excludes(seed)
+      ->excludes(output);
   add_format(*simulate_command, simulate.format);
   simulate_command->callback([&] { outcome = run_simulate(simulate); });
 

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "modeler/app/temporary_files.hpp"
+
 namespace limn::app {
 namespace {
 
@@ -48,6 +50,18 @@ mode_t default_mode() {
   return 0666 & ~mask;
 }
 
+// What a chain of links ends at, whether that exists or not.
+std::filesystem::path followed(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;  // as the kernel has it
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(path, error); ++i) {
+    const auto target = std::filesystem::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / target;  // an absolute target replaces the folder
+  }
+  return path;
+}
+
 }  // namespace
 
 OutputFile::OutputFile(std::string path, std::string temporary, int descriptor) noexcept
@@ -72,7 +86,10 @@ OutputFile::~OutputFile() { discard(); }
 
 void OutputFile::discard() noexcept {
   if (descriptor_ != kClosed && descriptor_ != STDOUT_FILENO) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (!temporary_.empty()) {
+    ::unlink(temporary_.c_str());
+    keep_on_signal(temporary_);
+  }
   descriptor_ = kClosed;
   temporary_.clear();
 }
@@ -91,12 +108,11 @@ Expected<OutputFile> OutputFile::open(const std::string& path) {
 
   // A link stays a link: what it points to is replaced, beside itself, so that rename stays within
   // one file system.
-  std::error_code ignored;
-  const std::filesystem::path target =
-      exists ? std::filesystem::canonical(path, ignored) : std::filesystem::path(path);
+  const std::filesystem::path target = followed(path);
   std::string pattern = target.string() + ".XXXXXX";
   const int descriptor = ::mkostemp(pattern.data(), O_CLOEXEC);
   if (descriptor < 0) return io_error("create", errno, remedy_for(errno));
+  remove_on_signal(pattern);
   ::fchmod(descriptor, exists ? status.st_mode & 07777 : default_mode());
   return OutputFile(target.string(), std::move(pattern), descriptor);
 }
@@ -111,21 +127,26 @@ Expected<void> OutputFile::write(std::string_view bytes) {
   return {};
 }
 
-Expected<void> OutputFile::commit() {
+Expected<void> OutputFile::finish() {
   const int descriptor = std::exchange(descriptor_, kClosed);
-  if (descriptor == STDOUT_FILENO) return {};
+  if (descriptor == kClosed || descriptor == STDOUT_FILENO) return {};
   if (!temporary_.empty() && ::fsync(descriptor) != 0) {
     const int error = errno;
     ::close(descriptor);
     return io_error("write", error, remedy_for(error));
   }
   if (::close(descriptor) != 0) return io_error("write", errno, remedy_for(errno));
-  if (!temporary_.empty()) {
-    if (::rename(temporary_.c_str(), path_.c_str()) != 0) {
-      return io_error("rename into place", errno, remedy_for(errno));
-    }
-    temporary_.clear();
+  return {};
+}
+
+Expected<void> OutputFile::commit() {
+  if (auto finished = finish(); !finished) return finished;
+  if (temporary_.empty()) return {};
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) {
+    return io_error("rename into place", errno, remedy_for(errno));
   }
+  keep_on_signal(temporary_);
+  temporary_.clear();
   return {};
 }
 

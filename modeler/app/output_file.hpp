@@ -11,8 +11,9 @@ namespace limn::app {
 /// A file that comes into being whole or not at all.
 ///
 /// A regular file is written under a temporary name beside its place and renamed there by commit();
-/// dropped uncommitted, it leaves nothing. What is no regular file (/dev/null, a pipe, "-" for
-/// standard output) is written directly, for there is nothing to rename.
+/// dropped uncommitted, or ended by a signal, it leaves nothing. What is no regular file
+/// (/dev/null, a pipe, "-" for standard output) is written directly, for there is nothing to
+/// rename.
 class OutputFile final : public ByteSink {
  public:
   /// Opens for writing at once, so that an unwritable place is told before any work.
@@ -27,10 +28,14 @@ class OutputFile final : public ByteSink {
 
   const std::string& path() const noexcept { return path_; }
 
-  /// Appends all of `bytes`. Error: kIo (disk full, closed pipe).
+  /// Appends all of `bytes`. Error: kIo (disk full). A closed pipe ends the program by SIGPIPE, as
+  /// it ends others.
   Expected<void> write(std::string_view bytes) override;
 
-  /// Makes sure that the bytes are on the disk and gives the file its name. Error: kIo.
+  /// Makes sure that the bytes are on the disk; nothing can be written any more. Error: kIo.
+  Expected<void> finish();
+
+  /// finish(), and gives the file its name. Error: kIo.
   Expected<void> commit();
 
  private:

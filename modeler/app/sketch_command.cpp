@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <span>
@@ -41,16 +40,28 @@ struct SketchOutput {
   SketchWriter write;
 };
 
+/// The type by the extension; JSON for standard output and for devices without one (/dev/null).
+const SketchFileType* type_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  const bool device = std::filesystem::exists(status) &&
+                      !std::filesystem::is_regular_file(status) &&
+                      !std::filesystem::is_directory(status);
+  if (path == "-" || (device && extension.empty())) extension = ".json";
+  const auto type = std::find_if(kFileTypes.begin(), kFileTypes.end(),
+                                 [&](const auto& t) { return t.extension == extension; });
+  return type == kFileTypes.end() ? nullptr : &*type;
+}
+
 /// Opens every output before any work, so that a wrong name costs nobody a wait.
 tl::expected<std::vector<SketchOutput>, Failure> open_outputs(
     const std::vector<std::string>& paths) {
   std::vector<SketchOutput> outputs;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    const std::string extension =
-        paths[i] == "-" ? ".json" : std::filesystem::path(paths[i]).extension().string();
-    const auto type = std::find_if(kFileTypes.begin(), kFileTypes.end(),
-                                   [&](const auto& t) { return t.extension == extension; });
-    if (type == kFileTypes.end()) {
+    const SketchFileType* type = type_of(paths[i]);
+    if (type == nullptr) {
       return usage_error("'" + paths[i] + "' has no extension that limn writes",
                          "choose .svg, .pdf, .png, .step or .json");
     }
@@ -65,11 +76,13 @@ tl::expected<std::vector<SketchOutput>, Failure> open_outputs(
   return outputs;
 }
 
-/// Writes all files, then names them all: a failure of the last leaves none of them.
+/// Writes all files to the disk, then names them all: where one cannot be written, none appears.
 Outcome write_outputs(const Sketch& sketch, std::span<SketchOutput> outputs) {
   for (SketchOutput& output : outputs) {
-    const Expected<void> written = output.write(sketch).and_then(
-        [&](const std::string& bytes) { return output.file.write(bytes); });
+    const Expected<void> written =
+        output.write(sketch)
+            .and_then([&](const std::string& bytes) { return output.file.write(bytes); })
+            .and_then([&] { return output.file.finish(); });
     if (!written) return in_file(output.file.path(), written);
   }
   for (SketchOutput& output : outputs) {
@@ -142,10 +155,10 @@ Table stroke_table(const Sketch& sketch) {
   const auto count = [](std::size_t n) { return static_cast<std::int64_t>(n); };
   for (std::size_t i = 0; i < sketch.strokes.size(); ++i) {
     const SketchStroke& stroke = sketch.strokes[i];
-    table.add({count(i), count(stroke.samples), std::string(name(stroke.tool)), stroke.length_mm,
-               to_seconds(stroke.t1 - stroke.t0), count(stroke.control_point_count()),
-               stroke.deviation_max_mm, stroke.deviation_rms_mm, count(stroke.corners.size()),
-               stroke.closed()});
+    table.add({count(i + 1), count(stroke.samples), std::string(name(stroke.tool)),
+               stroke.length_mm, to_seconds(stroke.t1 - stroke.t0),
+               count(stroke.control_point_count()), stroke.deviation_max_mm,
+               stroke.deviation_rms_mm, count(stroke.corners.size()), stroke.closed()});
   }
   return table;
 }
@@ -153,8 +166,12 @@ Table stroke_table(const Sketch& sketch) {
 }  // namespace
 
 Outcome run_sketch(const SketchArguments& arguments) {
-  if (!std::isfinite(arguments.tolerance_mm)) {
-    return usage_error("--tolerance is not finite", "give a length in mm, such as 0.1");
+  const auto& paths = arguments.outputs;
+  const bool json_on_stdout = std::find(paths.begin(), paths.end(), "-") != paths.end();
+  if (json_on_stdout && arguments.format != OutputFormat::kText &&
+      arguments.format != OutputFormat::kJson) {
+    return usage_error("-o - writes JSON to standard output, --format another format",
+                       "give one of them");
   }
   auto outputs = open_outputs(arguments.outputs);
   if (!outputs) return tl::unexpected(std::move(outputs.error()));
@@ -162,8 +179,6 @@ Outcome run_sketch(const SketchArguments& arguments) {
   if (!sketch) return tl::unexpected(std::move(sketch.error()));
   if (auto written = write_outputs(*sketch, *outputs); !written) return written;
 
-  const auto& paths = arguments.outputs;
-  const bool json_on_stdout = std::find(paths.begin(), paths.end(), "-") != paths.end();
   if (json_on_stdout) return {};
   if (arguments.format == OutputFormat::kJson) return print(sketch_to_json(*sketch));
   return print(stroke_table(*sketch).print(arguments.format));

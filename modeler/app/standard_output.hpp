@@ -8,8 +8,8 @@
 
 namespace limn::app {
 
-/// Standard output, written in blocks, so that a full disk or a closed pipe is an error and not
-/// silence. `text()` is the block to append to.
+/// Standard output, written in blocks, so that a full disk is an error and not silence. `text()` is
+/// the block to append to.
 class StandardOutput {
  public:
   std::string& text() noexcept { return text_; }

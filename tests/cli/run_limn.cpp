@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "tests/support/recordings.hpp"
 
@@ -16,14 +17,14 @@ extern char** environ;
 namespace limn::test {
 namespace fs = std::filesystem;
 
-CommandRun run_limn(const std::vector<std::string>& arguments, std::string_view input) {
+namespace {
+
+CommandRun run(std::vector<std::string> words, std::string_view input) {
   // Files rather than pipes: no deadlock, whatever the sizes.
   const TempFolder streams;
   const std::string out = streams.path() / "out";
   const std::string err = streams.path() / "err";
   const std::string in = streams.write("in", input).string();
-  std::vector<std::string> words = {LIMN_BINARY};
-  words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -35,18 +36,30 @@ CommandRun run_limn(const std::vector<std::string>& arguments, std::string_view 
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), create, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), create, 0600);
   pid_t child = 0;
-  const int error = posix_spawn(&child, LIMN_BINARY, &actions, nullptr, argv.data(), environ);
+  const int error = posix_spawn(&child, words[0].c_str(), &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  EXPECT_EQ(error, 0) << "cannot start " << LIMN_BINARY;
+  EXPECT_EQ(error, 0) << "cannot start " << words[0];
   if (error != 0) return {};
 
   int status = 0;
   waitpid(child, &status, 0);
-  CommandRun run;
-  run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  run.out = read_file(out);
-  run.err = read_file(err);
-  return run;
+  CommandRun done;
+  done.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  done.out = read_file(out);
+  done.err = read_file(err);
+  return done;
+}
+
+}  // namespace
+
+CommandRun run_limn(const std::vector<std::string>& arguments, std::string_view input) {
+  std::vector<std::string> words = {LIMN_BINARY};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return run(std::move(words), input);
+}
+
+CommandRun run_shell(const std::string& script) {
+  return run({"/bin/sh", "-c", script, LIMN_BINARY}, {});
 }
 
 std::vector<std::string> names_in(const TempFolder& folder) {

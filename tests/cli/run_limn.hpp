@@ -18,6 +18,9 @@ struct CommandRun {
 /// Runs the built `limn` with `arguments` in the current folder, `input` on its standard input.
 CommandRun run_limn(const std::vector<std::string>& arguments, std::string_view input = {});
 
+/// Runs a shell script with the path of the built `limn` as "$0".
+CommandRun run_shell(const std::string& script);
+
 /// Names of all that a folder holds, sorted.
 std::vector<std::string> names_in(const TempFolder& folder);
 

@@ -1,0 +1,57 @@
+#include "modeler/app/option_values.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "modeler/app/nearest_name.hpp"
+
+namespace limn::app {
+namespace {
+
+constexpr std::array<std::string_view, 4> kFormatNames = {"text", "json", "jsonl", "csv"};
+constexpr std::array<OutputFormat, 4> kFormats = {OutputFormat::kText, OutputFormat::kJson,
+                                                  OutputFormat::kJsonl, OutputFormat::kCsv};
+
+/// Whether all of `text` is one number, in the C locale, without sign or blank before it.
+template <class Number, class... Base>
+bool read_all(std::string_view text, Number& number, Base... base) {
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number, base...);
+  return error == std::errc() && stop == end;
+}
+
+std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+
+}  // namespace
+
+std::string parse_id(std::string_view text, std::uint16_t& vendor, std::uint16_t& product) {
+  constexpr int kHexadecimal = 16;
+  const auto colon = text.find(':');
+  if (colon != std::string_view::npos && read_all(text.substr(0, colon), vendor, kHexadecimal) &&
+      read_all(text.substr(colon + 1), product, kHexadecimal)) {
+    return {};
+  }
+  return quoted(text) + " is no VID:PID of hexadecimal digits, such as 28bd:0905";
+}
+
+std::string parse_format(std::string_view text, OutputFormat& format) {
+  for (std::size_t i = 0; i < kFormats.size(); ++i) {
+    if (text != kFormatNames[i]) continue;
+    format = kFormats[i];
+    return {};
+  }
+  return "there is no format " + quoted(text) + "; " + suggest(text, kFormatNames);
+}
+
+std::string parse_length(std::string_view text, double& length_mm) {
+  if (read_all(text, length_mm) && std::isfinite(length_mm) && length_mm > 0) return {};
+  return quoted(text) + " is no length above 0 mm, such as 0.1";
+}
+
+std::string parse_seed(std::string_view text, std::uint64_t& seed) {
+  if (read_all(text, seed)) return {};
+  return quoted(text) + " is no whole number from 0 to 2^64 - 1";
+}
+
+}  // namespace limn::app

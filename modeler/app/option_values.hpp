@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "modeler/app/output_format.hpp"
+
+namespace limn::app {
+
+// Values of options, from text as typed. Each stores the value and returns "", or returns what is
+// wrong with the text and what to write instead.
+
+/// "VID:PID", one to four hexadecimal digits each, as lsusb prints it.
+std::string parse_id(std::string_view text, std::uint16_t& vendor, std::uint16_t& product);
+
+/// "text", "json", "jsonl" or "csv".
+std::string parse_format(std::string_view text, OutputFormat& format);
+
+/// A finite length above 0, in mm.
+std::string parse_length(std::string_view text, double& length_mm);
+
+/// A whole number from 0 to 2^64 - 1.
+std::string parse_seed(std::string_view text, std::uint64_t& seed);
+
+}  // namespace limn::app
