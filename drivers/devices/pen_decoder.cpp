@@ -11,9 +11,7 @@ namespace {
 
 ReportClass class_of_application(hid::Usage application) noexcept {
   namespace usage = hid::usage;
-  if (application == usage::kTouchScreen || application == usage::kTouchPad) {
-    return ReportClass::kTouch;
-  }
+  if (hid::is_touch_application(application)) return ReportClass::kTouch;
   if (application == usage::kMouse) return ReportClass::kMouse;
   if (application == usage::kTabletFunctionKeys) return ReportClass::kPad;
   return ReportClass::kOther;

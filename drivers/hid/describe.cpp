@@ -1,13 +1,14 @@
 #include "drivers/hid/describe.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
 namespace limn::hid {
 namespace {
 
-constexpr double kDegreesPerRadian = 57.29577951308232;
+constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 constexpr std::size_t kNamedRanges = 4;  // usage ranges named in the row of an array field
 
 std::string usage_or_none(Usage usage) {

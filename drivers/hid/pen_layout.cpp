@@ -52,9 +52,6 @@ constexpr FieldSlot kFields[] = {
     {usage::kWacomSense, &PenLayout::sense},
     {usage::kDataValid, &PenLayout::data_valid},
     {usage::kConfidence, &PenLayout::confidence},
-    {usage::kQuality, &PenLayout::quality},
-    {usage::kTransducerIndex, &PenLayout::transducer_index},
-    {usage::kContactIdentifier, &PenLayout::contact_identifier},
     {usage::kContactCount, &PenLayout::contact_count},
     {usage::kBatteryStrength, &PenLayout::battery},
     {usage::kTransducerSerial, &PenLayout::serial},
@@ -138,12 +135,6 @@ std::optional<Transducer> transducer_of(Usage collection) noexcept {
   return std::nullopt;
 }
 
-bool is_touch(Usage application) noexcept {
-  const Usage standard = standard_usage(application);
-  return standard == usage::kTouchScreen || standard == usage::kTouchPad ||
-         standard == usage::kMultiplePointDigitizer;
-}
-
 /// For each collection the transducer collection that its fields belong to: the innermost one
 /// around them, else the top-level one.
 std::vector<CollectionIndex> transducer_collections(const ReportDescriptor& descriptor) {
@@ -182,7 +173,7 @@ bool has_pen_evidence(const PenLayout& layout, bool own_collection) noexcept {
 /// What the collection `own` and its surroundings make of a layout. In touch screens a Stylus
 /// collection with nothing but a contact is a single-touch finger.
 Transducer kind_of(std::optional<Transducer> own, const PenLayout& layout) noexcept {
-  const bool touch = is_touch(layout.application);
+  const bool touch = is_touch_application(layout.application);
   const bool pen_only = layout.pressure || layout.eraser || layout.invert || layout.barrel_switch;
   if (touch && own == Transducer::kStylus && !pen_only) return Transducer::kFinger;
   return own.value_or(touch ? Transducer::kFinger : Transducer::kStylus);
@@ -226,9 +217,6 @@ std::vector<PenLayout> transducer_layouts(const ReportDescriptor& descriptor) {
     layout.numbered = numbered;
     layout.byte_length = descriptor.report(ReportKind::kInput, report_id)->byte_length;
     layout.collection = collection;
-    layout.slot = static_cast<std::uint8_t>(
-        std::count_if(layouts.begin(), layouts.end(),
-                      [id = report_id](const PenLayout& other) { return other.report_id == id; }));
     use_buttons_as_switches(layout);
     layouts.push_back(layout);
   }

@@ -43,7 +43,6 @@ struct PenLayout {
   std::uint32_t byte_length = 0;               ///< of the declared report, ID byte included
   CollectionIndex collection = kNoCollection;  ///< the stylus, pen or finger collection
   Usage application;                           ///< usage of the top-level collection around it
-  std::uint8_t slot = 0;  ///< number of this transducer within its report, from 0
 
   AxisReader x;                ///< mm, 0 at the Logical Minimum; counts without has_unit
   AxisReader y;                ///< mm, like x
@@ -68,9 +67,6 @@ struct PenLayout {
   FieldReader sense;       ///< Wacom: in the wider proximity in which the tool id is known
   FieldReader data_valid;  ///< 0 means: ignore the coordinates
   FieldReader confidence;
-  FieldReader quality;
-  FieldReader transducer_index;
-  FieldReader contact_identifier;
   FieldReader contact_count;
   FieldReader battery;      ///< percent where its logical maximum is 100
   FieldReader serial;       ///< up to 64 bits: read_bits

@@ -77,17 +77,4 @@ std::vector<LocatedElement> locate(const ReportDescriptor& descriptor, std::uint
   return found;
 }
 
-ReportLayout ReportLayout::compile(const ReportDescriptor& descriptor, std::uint8_t report_id,
-                                   CollectionIndex collection, std::span<const Usage> wanted) {
-  ReportLayout layout;
-  layout.report_id_ = report_id;
-  layout.numbered_ = descriptor.numbered(ReportKind::kInput);
-  layout.readers_.reserve(wanted.size());
-  for (const Usage usage : wanted) {
-    const auto found = locate(descriptor, report_id, collection, usage);
-    layout.readers_.push_back(found.empty() ? FieldReader{} : found.front().reader);
-  }
-  return layout;
-}
-
 }  // namespace limn::hid

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 namespace limn::hid {
 namespace {
 
 constexpr double kMmPerCm = 10.0;
 constexpr double kMmPerInch = 25.4;
-constexpr double kRadPerDegree = 0.017453292519943295;  // pi / 180, nearest double
+constexpr double kRadPerDegree = std::numbers::pi / 180;
 constexpr double kNewtonPerDyne = 1e-5;
 constexpr double kDegreesPerTurn = 360.0;
 constexpr double kWidestTiltDegrees = 127.0;      // what an 8-bit tilt without unit declares

@@ -20,10 +20,7 @@ struct Usage {
 /// Usage pages.
 namespace page {
 inline constexpr std::uint16_t kGenericDesktop = 0x01;
-inline constexpr std::uint16_t kKeyboard = 0x07;
-inline constexpr std::uint16_t kLed = 0x08;
 inline constexpr std::uint16_t kButton = 0x09;
-inline constexpr std::uint16_t kConsumer = 0x0C;
 inline constexpr std::uint16_t kDigitizer = 0x0D;
 /// Wacom's own page. The upper byte of a usage id names the standard page whose usage it repeats:
 /// 0x0130 is Generic Desktop X, 0x0042 (upper byte 0) the digitizer page's Tip Switch.
@@ -41,9 +38,7 @@ inline constexpr Usage kMouse{page::kGenericDesktop, 0x02};
 inline constexpr Usage kX{page::kGenericDesktop, 0x30};
 inline constexpr Usage kY{page::kGenericDesktop, 0x31};
 inline constexpr Usage kZ{page::kGenericDesktop, 0x32};
-inline constexpr Usage kWheel{page::kGenericDesktop, 0x38};
 
-inline constexpr Usage kDigitizer{page::kDigitizer, 0x01};
 inline constexpr Usage kPen{page::kDigitizer, 0x02};
 inline constexpr Usage kTouchScreen{page::kDigitizer, 0x04};
 inline constexpr Usage kTouchPad{page::kDigitizer, 0x05};
@@ -55,9 +50,7 @@ inline constexpr Usage kTabletFunctionKeys{page::kDigitizer, 0x39};
 inline constexpr Usage kTipPressure{page::kDigitizer, 0x30};
 inline constexpr Usage kBarrelPressure{page::kDigitizer, 0x31};
 inline constexpr Usage kInRange{page::kDigitizer, 0x32};
-inline constexpr Usage kQuality{page::kDigitizer, 0x36};
 inline constexpr Usage kDataValid{page::kDigitizer, 0x37};
-inline constexpr Usage kTransducerIndex{page::kDigitizer, 0x38};
 inline constexpr Usage kBatteryStrength{page::kDigitizer, 0x3B};
 inline constexpr Usage kInvert{page::kDigitizer, 0x3C};
 inline constexpr Usage kXTilt{page::kDigitizer, 0x3D};
@@ -68,15 +61,12 @@ inline constexpr Usage kTwist{page::kDigitizer, 0x41};
 inline constexpr Usage kTipSwitch{page::kDigitizer, 0x42};
 inline constexpr Usage kBarrelSwitch{page::kDigitizer, 0x44};
 inline constexpr Usage kEraser{page::kDigitizer, 0x45};
-inline constexpr Usage kTabletPick{page::kDigitizer, 0x46};
 inline constexpr Usage kConfidence{page::kDigitizer, 0x47};  ///< "Touch Valid" in newer tables
-inline constexpr Usage kContactIdentifier{page::kDigitizer, 0x51};
 inline constexpr Usage kContactCount{page::kDigitizer, 0x54};
 inline constexpr Usage kScanTime{page::kDigitizer, 0x56};
 inline constexpr Usage kSecondaryBarrelSwitch{page::kDigitizer, 0x5A};
 inline constexpr Usage kTransducerSerial{page::kDigitizer, 0x5B};
 inline constexpr Usage kTransducerSerialPart2{page::kDigitizer, 0x6E};
-inline constexpr Usage kReportRate{page::kDigitizer, 0xA1};
 
 inline constexpr Usage kWacomSense{page::kWacom, 0x36};
 inline constexpr Usage kWacomSerialHigh{page::kWacom, 0x5C};
@@ -114,6 +104,13 @@ constexpr Usage standard_usage(Usage usage) noexcept {
     return {page::kGenericDesktop, id};
   }
   return usage;
+}
+
+/// Whether fingers report in an application collection of this usage.
+constexpr bool is_touch_application(Usage application) noexcept {
+  const Usage standard = standard_usage(application);
+  return standard == usage::kTouchScreen || standard == usage::kTouchPad ||
+         standard == usage::kMultiplePointDigitizer;
 }
 
 /// "Digitizer", "Generic Desktop", ..; empty for a page without a name here.

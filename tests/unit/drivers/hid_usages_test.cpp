@@ -30,5 +30,14 @@ TEST(HidUsages, Names) {
   EXPECT_EQ(page_name(0x9999), "");
 }
 
+TEST(HidUsages, TouchApplicationsCountOnVendorPagesToo) {
+  EXPECT_TRUE(is_touch_application(usage::kTouchScreen));
+  EXPECT_TRUE(is_touch_application(usage::kTouchPad));
+  EXPECT_TRUE(is_touch_application(usage::kMultiplePointDigitizer));
+  EXPECT_TRUE(is_touch_application({page::kWacomG11, 0x11}));
+  EXPECT_FALSE(is_touch_application(usage::kPen));
+  EXPECT_FALSE(is_touch_application(usage::kMouse));
+}
+
 }  // namespace
 }  // namespace limn::hid
