@@ -2,9 +2,9 @@
 // descriptor that follows them (little-endian), the rest is the report.
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,15 +12,13 @@
 #include "drivers/hid/descriptor_parser.hpp"
 #include "drivers/hid/field_reader.hpp"
 #include "drivers/hid/pen_layout.hpp"
+#include "tests/fuzz/require.hpp"
 
 namespace {
 
 using namespace limn::hid;
+using limn::fuzz::require;
 using Report = std::span<const std::uint8_t>;
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
 
 bool bit_of(Report report, std::size_t bit) { return (report[bit / 8] >> bit % 8 & 1) != 0; }
 
@@ -36,23 +34,50 @@ std::optional<std::uint64_t> plain_bits(Report report, const FieldReader& reader
 
 void check_element(const Field& field, std::uint32_t element, Report report) {
   const FieldReader reader = FieldReader::of_element(field, element);
-  require(reader.present() == (field.bit_size <= 64));
+  require(reader.present() == (field.bit_size <= 64), "up to 64 bits are read");
   if (!reader) {
-    require(!reader.read(report).has_value());
+    require(!reader.read(report).has_value(), "an absent reader reads nothing");
     return;
   }
   const auto expected = plain_bits(report, reader);
-  require(reader.read_bits(report) == expected);
+  require(reader.read_bits(report) == expected, "bits are read as they lie");
   const auto value = reader.read(report);
+  const bool has_nonzero_bits = expected.value_or(0) != 0;
+  require(reader.is_set(report) == (has_nonzero_bits && value.has_value()), "a switch is its bits");
   if (!expected) {
-    require(!value.has_value());
+    require(!value.has_value(), "nothing is read past the end");
   } else if (value) {
     const std::uint64_t kept = static_cast<std::uint64_t>(*value) ^ *expected;
-    require(field.bit_size == 64 ? kept == 0 : kept << (64 - field.bit_size) == 0);
-    require(field.is_signed() || field.bit_size == 64 || *value >= 0);
+    require(field.bit_size == 64 ? kept == 0 : kept << (64 - field.bit_size) == 0,
+            "a value keeps its bits");
+    require(field.is_signed() || field.bit_size == 64 || *value >= 0,
+            "unsigned fields are not negative");
   } else {
-    require(field.flags.null_state());
+    require(field.flags.null_state(), "only null states have bits and no value");
   }
+}
+
+/// Whether an element of the array field holds `wanted`; nothing where the report ends before that
+/// is known.
+std::optional<bool> plainly_selected(Report report, const Field& field, std::int64_t wanted) {
+  for (std::uint32_t i = 0; i < field.count; ++i) {
+    const auto bits = plain_bits(report, FieldReader::of_element(field, i));
+    if (!bits) return std::nullopt;
+    const bool negative = field.is_signed() && (*bits >> (field.bit_size - 1)) != 0;
+    const std::uint64_t above =
+        negative && field.bit_size < 64 ? ~std::uint64_t{0} << field.bit_size : 0;
+    if (static_cast<std::int64_t>(*bits | above) == wanted) return true;
+  }
+  return false;
+}
+
+void check_selection(const Field& field, std::int64_t wanted, Report report) {
+  const FieldReader reader = FieldReader::of_selection(field, wanted);
+  require(reader.present() == (field.bit_size <= 64), "up to 64 bits are searched");
+  if (!reader) return;
+  const auto expected = plainly_selected(report, field, wanted);
+  require(reader.read(report) == expected, "a selection is an element with its index");
+  require(reader.is_set(report) == expected.value_or(false), "a selection is a switch");
 }
 
 void check_layout(const PenLayout& layout, Report report) {
@@ -63,13 +88,13 @@ void check_layout(const PenLayout& layout, Report report) {
     const auto counts = axis->reader.read(report);
     if (!counts) continue;
     const double value = axis->map(*counts);
-    require(value - value == 0);  // finite
+    require(std::isfinite(value), "converted values are finite");
   }
   for (const FieldReader* reader : {&layout.tip_switch, &layout.in_range, &layout.barrel_switch,
                                     &layout.eraser, &layout.invert, &layout.sense, &layout.serial,
                                     &layout.serial_high, &layout.tool_type, &layout.buttons[0]}) {
-    require(reader->is_set(report) == (reader->read(report).value_or(0) != 0));
-    require(!reader->read(report).has_value() || reader->read_bits(report).has_value());
+    require(!reader->read(report).has_value() || reader->read_bits(report).has_value(),
+            "a value has bits");
   }
 }
 
@@ -88,8 +113,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check_element(field, field.count / 2, report);
     check_element(field, field.count - 1, report);
     if (field.flags.array()) {
-      const auto selected = FieldReader::of_selection(field, field.logical.minimum);
-      require(selected.read(report).value_or(0) <= 1);
+      check_selection(field, field.logical.minimum, report);
+      const auto first = FieldReader::of_element(field, 0).read(report);
+      if (first) check_selection(field, *first, report);
     }
   }
   for (const PenLayout& layout : transducer_layouts(*descriptor)) check_layout(layout, report);

@@ -64,22 +64,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   auto decoder = PenDecoder::make(spec.vendor, spec.product, descriptor);
   if (!decoder) {
-    fuzz::demand(stranger, "a device of the tables needs no descriptor");
+    fuzz::require(stranger, "a device of the tables needs no descriptor");
     return 0;
   }
 
   fuzz::PenLaws laws;
   StrokeSampler strokes({.max_points = 64});
   const auto sink = [](Stroke& stroke) {
-    fuzz::demand(!stroke.points.empty() && stroke.points.size() <= 64, "strokes keep their limit");
+    fuzz::require(!stroke.points.empty() && stroke.points.size() <= 64, "strokes keep their limit");
   };
   Timestamp time{};
   while (!input.empty()) {
     const std::size_t length = input.byte();
     time += std::chrono::milliseconds(input.byte());
     const auto decoded = decoder->decode(Report{1, time, input.take(length)});
-    fuzz::demand(decoded.kind == ReportClass::kPen || decoded.samples.empty(),
-                 "samples come from pen reports");
+    fuzz::require(decoded.kind == ReportClass::kPen || decoded.samples.empty(),
+                  "samples come from pen reports");
     laws.check(decoded.samples);
     for (const PenSample& sample : decoded.samples) strokes.push(sample, sink);
   }

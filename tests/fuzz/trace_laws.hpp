@@ -2,8 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <map>
 #include <memory>
@@ -14,16 +12,11 @@
 #include "input/trace/hid_recorder_reader.hpp"
 #include "input/trace/hid_recorder_writer.hpp"
 #include "input/trace/trace.hpp"
+#include "tests/fuzz/require.hpp"
 
 // The laws that every reader keeps, whatever the bytes. A broken one ends the program.
 
 namespace limn::fuzz {
-
-inline void require(bool holds, const char* law) {
-  if (holds) return;
-  std::fprintf(stderr, "broken law: %s\n", law);
-  std::abort();
-}
 
 inline std::string_view as_text(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
@@ -81,6 +74,8 @@ class Laws {
   void operator()(const TraceDamage& damage) {
     require(salvage_, "only salvage skips damage");
     require_good_error(damage.error);
+    require(damage.lost.size() <= kMaxTraceDevices, "devices are limited");
+    for (const LostReports& lost : damage.lost) require(lost.count > 0, "what is lost is some");
   }
 
   void count_event() { require(left_-- > 0, "a reading ends"); }
