@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -17,6 +18,7 @@ constexpr std::uint16_t kEvAbs = 0x03;
 constexpr std::uint16_t kEvMsc = 0x04;
 constexpr std::uint16_t kSynDropped = 3;
 constexpr std::uint16_t kMscSerial = 0;
+constexpr std::int32_t kNoSerial = -1;
 constexpr std::uint16_t kAbsX = 0x00;
 constexpr std::uint16_t kAbsY = 0x01;
 constexpr std::uint16_t kAbsZ = 0x02;
@@ -43,8 +45,8 @@ constexpr unsigned kMice = 1U << 6 | 1U << 7;
 constexpr unsigned kPens = 0xFFU & ~(kRubber | kFinger | kMice);
 
 constexpr std::uint16_t kWacomVendor = 0x056A;
-constexpr double kPi = 3.141592653589793;
-constexpr double kRadiansPerDegree = 0.017453292519943295;
+constexpr double kPi = std::numbers::pi;
+constexpr double kRadiansPerDegree = kPi / 180;  // the nearest double
 
 double span_of(std::int32_t minimum, std::int32_t maximum) noexcept {
   return static_cast<double>(maximum) - minimum;
@@ -56,11 +58,6 @@ double unit_interval(double counts, double span) noexcept {
 
 PenButtons with_bit(PenButtons buttons, unsigned bit, bool down) noexcept {
   return static_cast<PenButtons>(down ? buttons | 1U << bit : buttons & ~(1U << bit));
-}
-
-PenState state_of(Tool tool, bool touching) noexcept {
-  if (tool == Tool::kEraser) return touching ? PenState::kErasing : PenState::kInRangeErasing;
-  return touching && tool == Tool::kPen ? PenState::kInContact : PenState::kInRange;
 }
 
 /// Tilt counts a radian: as declared, else degrees, tenths or hundredths by what the range allows.
@@ -77,6 +74,10 @@ std::string id_text(const TraceDevice& device) {
   char text[16];
   std::snprintf(text, sizeof text, "%04x:%04x", unsigned{device.vendor}, unsigned{device.product});
   return text;
+}
+
+bool is_dropped(const EvdevEvent& event) noexcept {
+  return event.type == kEvSyn && event.code == kSynDropped;
 }
 
 bool is_touch_axis(const EvdevAxis& axis) noexcept {
@@ -137,17 +138,17 @@ Expected<void> EvdevPenDecoder::take_axes(const TraceDevice& device) {
 std::span<const PenSample> EvdevPenDecoder::decode(const EvdevFrame& frame) noexcept {
   output_->begin(frame.device);
   if (!has_pen_) return {};
+  if (std::any_of(frame.events.begin(), frame.events.end(), is_dropped)) {
+    dropped_ = true;
+    return {};
+  }
   position_moved_ = false;
   bool told = false;
-  for (const EvdevEvent& event : frame.events) {
-    if (event.type == kEvSyn && event.code == kSynDropped) {
-      dropped_ = true;
-      return {};
-    }
-    told = apply(event) || told;
-  }
+  for (const EvdevEvent& event : frame.events) told = apply(event) || told;
+  if (!told) return {};
+  // A pen that was in range has left even if a finger is down.
   const bool finger_alone = tools_ == kFinger;
-  if (!told || finger_alone) return {};
+  if (finger_alone && output_->machine().last().state == PenState::kOutOfRange) return {};
   PenSample sample = current(frame.time);
   const bool nothing_new = sample.state == PenState::kOutOfRange && !position_moved_ &&
                            output_->machine().last().state == PenState::kOutOfRange;
@@ -171,14 +172,15 @@ bool EvdevPenDecoder::apply(const EvdevEvent& event) noexcept {
     case kEvAbs:
       return apply_axis(event.code, event.value);
     case kEvMsc:
-      if (event.code != kMscSerial) return false;
+      // -1 is the pad's, whose frames say nothing of the pen.
+      if (event.code != kMscSerial || event.value == kNoSerial) return false;
       held_.serial = static_cast<std::uint32_t>(event.value);
       if (held_.serial != 0) {
         held_.axes.add(PenAxis::kSerial);
       } else {
         held_.axes.remove(PenAxis::kSerial);
       }
-      return true;
+      return true;  // even alone: the pen reported, unmoved
     default:
       return false;
   }
@@ -262,7 +264,7 @@ bool EvdevPenDecoder::apply_axis(std::uint16_t code, std::int32_t value) noexcep
 PenSample EvdevPenDecoder::current(Timestamp time) noexcept {
   PenSample sample = held_;
   sample.time = time;
-  const bool in_range = tool_key_seen_ ? tools_ != 0 : touching_;
+  const bool in_range = tool_key_seen_ ? (tools_ & ~kFinger) != 0 : touching_;
   if ((tools_ & kRubber) != 0) {
     sample.tool = Tool::kEraser;
   } else if ((tools_ & kMice) != 0 && (tools_ & kPens) == 0) {

@@ -16,14 +16,14 @@ namespace limn {
 ///
 ///     ABS_X, ABS_Y                        position, 0 at the axis' minimum; raw as the kernel sent
 ///     ABS_PRESSURE, ABS_DISTANCE          over minimum .. maximum of the axis
-///     ABS_TILT_X, ABS_TILT_Y              by the resolution (units a radian), else degrees; a
-///     range
-///                                         from 0 (older kernels) has upright in its middle
+///     ABS_TILT_X, ABS_TILT_Y              by the resolution (units a radian), else degrees; from 0
+///                                         on (older kernels): upright in the middle of the range
 ///     ABS_Z                               twist of an art pen; Wacom's kernel driver turns it by a
 ///                                         quarter, which is undone
 ///     BTN_TOOL_PEN .. BTN_TOOL_LENS       tool and range; without any of them: BTN_TOUCH
 ///     BTN_TOUCH, BTN_STYLUS, 2, 3         contact and barrel switches; mouse buttons for mice
-///     MSC_SERIAL                          serial
+///     MSC_SERIAL                          serial; alone it tells that the pen reported, unmoved;
+///                                         -1 is the pad's
 ///     SYN_DROPPED                         the kernel lost events: this frame's are void, and the
 ///                                         next sample's `lost` is 1 (one or more)
 ///

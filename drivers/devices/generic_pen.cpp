@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "input/sample/tilt.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr double kPi = 3.141592653589793;
+constexpr double kPi = std::numbers::pi;
 
 // Most devices lack most members of a layout: asking first keeps their reading free.
 bool is_set(const hid::FieldReader& reader, Bytes report) noexcept {
@@ -120,7 +121,7 @@ void set_tilt(const hid::PenLayout& layout, Bytes report, PenSample& sample) noe
               &PenSample::tilt_y_rad);
     return;
   }
-  constexpr double kDegreesPerRadian = 57.29577951308232;
+  constexpr double kDegreesPerRadian = 180 / kPi;
   std::int64_t altitude = 0;
   std::int64_t azimuth = 0;
   if (!get(layout.altitude.reader, report, altitude)) return;

@@ -10,6 +10,12 @@
 
 namespace limn {
 
+/// The state of `tool` in range: a mouse never touches.
+constexpr PenState state_of(Tool tool, bool touching) noexcept {
+  if (tool == Tool::kEraser) return touching ? PenState::kErasing : PenState::kInRangeErasing;
+  return touching && tool == Tool::kPen ? PenState::kInContact : PenState::kInRange;
+}
+
 /// Collects the samples of one report behind a state machine, in fixed memory.
 class PenOutput {
  public:
@@ -40,7 +46,7 @@ class PenOutput {
     gone.time = time;
     gone.lost = 0;
     if (in_contact(gone.state)) {
-      gone.state = gone.tool == Tool::kEraser ? PenState::kInRangeErasing : PenState::kInRange;
+      gone.state = state_of(gone.tool, false);
       push(gone);
     }
     PenSample out_of_range;

@@ -15,7 +15,7 @@ enum class ReportClass : std::uint8_t {
   kStatus,     ///< battery, wireless link, tool lists
   kOther,      ///< named by the descriptor, but nothing of the above
   kUnknownId,  ///< known neither to the descriptor nor to the device's table
-  kTooShort,   ///< ends before the pen's position
+  kTooShort,   ///< a pen's, but it ends before the last byte that its decoder needs
   kNoSize,     ///< a pen's, but the descriptor gives its positions no physical size
 };
 inline constexpr int kReportClassCount = 9;

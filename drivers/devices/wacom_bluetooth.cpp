@@ -80,8 +80,9 @@ void WacomDecoder::frame_bundle(Bytes report, Timestamp time, PenOutput& out) no
         report.subspan(1 + form.frame_bytes * static_cast<std::size_t>(i), form.frame_bytes);
     if (!has(bytes[0], kValid)) continue;
     ++seen;
-    if (!present_ && serial != 0) {
-      held_.axes.add(PenAxis::kSerial);
+    if (!present_) {
+      held_ = PenSample{};  // a tool that only came near left its serial here
+      if (serial != 0) held_.axes.add(PenAxis::kSerial);
       held_.serial = serial;
     }
     frame(bytes, tool_id, time - period * (valid - seen), out);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 
 #include "input/sample/pen_sample.hpp"
@@ -10,7 +11,10 @@ namespace limn::wacom {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr double kRadiansPerDegree = 0.017453292519943295;
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+
+/// Counts of pressure up to which a tip that has no switch of its own does not touch: noise.
+constexpr std::int32_t kTouchPressure = 10;
 
 constexpr std::int32_t le16(Bytes b, std::size_t at) noexcept { return b[at] | b[at + 1] << 8; }
 constexpr std::int32_t be16(Bytes b, std::size_t at) noexcept { return b[at] << 8 | b[at + 1]; }
@@ -32,12 +36,6 @@ constexpr PenButtons buttons(bool first, bool second, bool third, bool fourth = 
                              bool fifth = false) noexcept {
   return static_cast<PenButtons>(buttons(first, second) | button(third, 2) | button(fourth, 3) |
                                  button(fifth, 4));
-}
-
-/// The state of `tool` in range: a mouse never touches.
-constexpr PenState state_of(Tool tool, bool touching) noexcept {
-  if (tool == Tool::kEraser) return touching ? PenState::kErasing : PenState::kInRangeErasing;
-  return touching && tool == Tool::kPen ? PenState::kInContact : PenState::kInRange;
 }
 
 /// A turn in steps of 0.2 degrees, -900 to 899 (or any other), to 0 .. 2 pi.

@@ -14,10 +14,10 @@ constexpr std::size_t needed_bytes(PenFamily family, std::uint8_t report_id) noe
   switch (family) {
     case F::kPenPartner:
     case F::kDtus:
+    case F::kGraphireBluetooth:
       return 7;
     case F::kGraphire:
     case F::kGraphirePad:
-    case F::kGraphireBluetooth:
     case F::kPl:
     case F::kPtu:
     case F::kDtu:

@@ -14,7 +14,7 @@ void WacomDecoder::pl(Bytes report, Timestamp time, PenOutput& out) noexcept {
   const std::int32_t x = report[3] | report[2] << 7 | (report[1] & 0x03) << 14;
   const std::int32_t y = report[6] | report[5] << 7 | (report[4] & 0x03) << 14;
   if (!has(report[1], 0x40)) {
-    leave(time, out);
+    leave_at(held_.tool, x, y, time, out);
     return;
   }
   const bool second_switch = has(report[4], 0x20);
@@ -38,8 +38,8 @@ void WacomDecoder::pl(Bytes report, Timestamp time, PenOutput& out) noexcept {
 }
 
 // Cintiq Partner (source: kernel driver).
-//   d1: 20 in range, 04 eraser, 01 tip, 08 eraser's tip, 02 and 10 barrel; le16 x 2, y 4, pressure
-//   6
+//   d1: 20 in range, 04 eraser, 01 tip, 08 eraser's tip, 02 and 10 barrel
+//   le16 x 2, y 4, pressure 6
 void WacomDecoder::ptu(Bytes report, Timestamp time, PenOutput& out) noexcept {
   if (!has(report[1], 0x20)) {
     leave_at(held_.tool, le16(report, 2), le16(report, 4), time, out);
@@ -56,8 +56,8 @@ void WacomDecoder::ptu(Bytes report, Timestamp time, PenOutput& out) noexcept {
 }
 
 // DTU-1631, DTU-2231 (recording of the latter; the kernel driver).
-//   d1: 20 in range, 0C eraser, 05 tip, 02 and 10 barrel; le16 x 2, y 4; pressure d6 | (d7 & 1) <<
-//   8
+//   d1: 20 in range, 0C eraser, 05 tip, 02 and 10 barrel
+//   le16 x 2, y 4; pressure d6 | (d7 & 1) << 8
 void WacomDecoder::dtu(Bytes report, Timestamp time, PenOutput& out) noexcept {
   if (!has(report[1], 0x20)) {
     leave_at(held_.tool, le16(report, 2), le16(report, 4), time, out);
@@ -77,7 +77,6 @@ void WacomDecoder::dtu(Bytes report, Timestamp time, PenOutput& out) noexcept {
 //   d1: 80 in range, 18 tool (08 eraser, 10 pen, 00 as before: seen while it hovers), 20 and 40
 //       barrel, 03 pressure 9, 8; d2 pressure 7..0, be16 x 3, y 5
 void WacomDecoder::dtus(Bytes report, Timestamp time, PenOutput& out) noexcept {
-  constexpr std::int32_t kTouchPressure = 10;
   const std::int32_t x = be16(report, 3);
   const std::int32_t y = be16(report, 5);
   if (!has(report[1], 0x80)) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include "drivers/devices/wacom_bytes.hpp"
 #include "drivers/devices/wacom_decoder.hpp"
@@ -7,12 +8,12 @@ namespace limn {
 
 using namespace wacom;  // byte access
 
-// PenPartner (source: kernel driver).
+// PenPartner (source: kernel driver, which reads no position out of range).
 //   report 1: le16 x 1, le16 y 3, d5: 80 in range, 40 barrel, 20 eraser; s8 pressure at 6 from -127
 //   report 2: always in range, touching above -80 unless d5 & 20
 void WacomDecoder::penpartner(Bytes report, Timestamp time, PenOutput& out) noexcept {
   constexpr std::int32_t kRestPressure = -127;
-  constexpr std::int32_t kTouchPressure = -80;  // report 2
+  constexpr std::int32_t kSecondFormTouch = -80;
   const std::int32_t pressure = signed8(report[6]);
   const bool first_form = report[0] == 1;
   if (first_form && !has(report[5], 0x80)) {
@@ -23,7 +24,7 @@ void WacomDecoder::penpartner(Bytes report, Timestamp time, PenOutput& out) noex
   sample.time = time;
   sample.tool = first_form && has(report[5], 0x20) ? Tool::kEraser : Tool::kPen;
   const bool touching =
-      first_form ? pressure > kRestPressure : pressure > kTouchPressure && !has(report[5], 0x20);
+      first_form ? pressure > kRestPressure : pressure > kSecondFormTouch && !has(report[5], 0x20);
   sample.state = state_of(sample.tool, touching);
   sample.buttons = buttons(has(report[5], 0x40), false);
   set_position(sample, le16(report, 1), le16(report, 3));

@@ -27,8 +27,6 @@ using namespace wacom;  // byte access
 // drops: it is kept here.
 namespace {
 
-constexpr std::int32_t kTouchPressure = 10;  // counts: lighter is noise
-
 // Packet types.
 constexpr unsigned kLastPen = 3;
 constexpr unsigned kMouse4d = 4;

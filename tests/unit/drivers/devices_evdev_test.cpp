@@ -159,8 +159,10 @@ TEST_F(EvdevPen, OutOfRangeKeepsThePositionExceptWacomsReset) {
 TEST_F(EvdevPen, DroppedEventsAreToldWithTheNextSample) {
   use(tablet());
   one({{kAbs, kX, 200}, {kAbs, kY, 300}, {kKey, kToolPen, 1}});
-  EXPECT_THAT(frame({{kAbs, kX, 999}, {0, 3, 0}, {kAbs, kX, 888}}), IsEmpty());
-  EXPECT_EQ(one({{kAbs, kX, 400}}).lost, 1U);
+  EXPECT_THAT(frame({{kAbs, kY, 999}, {0, 3, 0}, {kAbs, kX, 888}}), IsEmpty());
+  const PenSample next = one({{kAbs, kX, 400}});
+  EXPECT_EQ(next.lost, 1U);
+  EXPECT_EQ(next.raw.y, 300) << "nothing of the frame counts, before the loss or after";
   EXPECT_EQ(one({{kAbs, kX, 401}}).lost, 0U);
 }
 
@@ -173,6 +175,22 @@ TEST_F(EvdevPen, FingersAreNoPens) {
   use(touch);
   EXPECT_FALSE(decoder_->has_pen());
   EXPECT_THAT(frame({{kAbs, kX, 200}, {kAbs, kY, 300}, {kKey, kTouch, 1}}), IsEmpty());
+}
+
+TEST_F(EvdevPen, APenLeavesEvenIfAFingerIsOnThePad) {
+  use(tablet());
+  one({{kAbs, kX, 200}, {kAbs, kY, 300}, {kKey, kToolPen, 1}});
+  one({{kKey, kToolFinger, 1}});
+  EXPECT_EQ(one({{kKey, kToolPen, 0}}).state, PenState::kOutOfRange);
+  EXPECT_THAT(frame({{kKey, kToolFinger, 1}, {kAbs, kX, 210}}), IsEmpty());
+}
+
+TEST_F(EvdevPen, ASerialAloneIsAPenThatDwellsAndMinusOneIsThePads) {
+  use(tablet());
+  one({{kAbs, kX, 200}, {kAbs, kY, 300}, {kKey, kToolPen, 1}, {kMsc, 0, 77}});
+  EXPECT_EQ(one({{kMsc, 0, 77}}).raw.x, 200);
+  EXPECT_THAT(frame({{kMsc, 0, -1}}), IsEmpty());
+  EXPECT_EQ(one({{kAbs, kX, 210}}).serial, 77U);
 }
 
 TEST_F(EvdevPen, ASizeComesFromTheTableWhereTheKernelKnewNone) {

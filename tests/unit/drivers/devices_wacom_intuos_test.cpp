@@ -320,6 +320,18 @@ TEST(WacomIntuosPro2Bluetooth, SevenFramesEachWithItsTime) {
   EXPECT_EQ(only(device(report(1, 0x80), milliseconds(1045))).state, PenState::kOutOfRange);
 }
 
+TEST(WacomIntuosPro2Bluetooth, AToolThatOnlyCameNearLeavesNoSerialBehind) {
+  DecodedDevice device(kWacom, 0x0360);
+  ReportBytes report(361, 0);
+  report[0] = 0x80;
+  report[1] = 0xC0;  // in proximity only
+  report[99] = 0x78;
+  EXPECT_THAT(device(report), IsEmpty());
+  report[1] = 0xE0;
+  report[99] = 0;
+  EXPECT_FALSE(only(device(report)).axes.has(PenAxis::kSerial));
+}
+
 TEST(WacomIntuosBluetooth, FourShortFrames) {
   DecodedDevice device(kWacom, 0x0377);  // 100 counts a mm, pressure to 4095
   ReportBytes report(43, 0);

@@ -74,6 +74,7 @@ TEST(WacomGraphire, BluetoothHasItsNinthPressureBitBesideTheSwitches) {
   DecodedDevice device(kWacom, 0x81);
   device({0x03, 0x90, 1, 0, 1, 0, 0, 0x1C});
   EXPECT_EQ(only(device({0x03, 0x99, 1, 0, 1, 0, 0x12, 0x1F})).raw.pressure, 0x112);
+  EXPECT_EQ(only(device({0x03, 0x99, 1, 0, 1, 0, 0x13})).raw.pressure, 0x113);
   EXPECT_THAT(device({0x02, 0x90, 1, 0, 1, 0, 0, 0}), IsEmpty());
   EXPECT_EQ(device.kind(), ReportClass::kUnknownId);
 }
@@ -107,7 +108,11 @@ TEST(WacomPl, AssemblesItsSplitNumbersAndTellsTheEraserByBarrel2) {
   EXPECT_EQ(touch.raw.pressure, 511);
   EXPECT_EQ(touch.buttons, 3) << "entered without barrel2, so it is the pen's";
   device({0x02, 0x40, 0x0F, 0x50, 0x00, 0x07, 0x68, 0x40});
-  EXPECT_EQ(only(device({0x02, 0, 0, 0, 0, 0, 0, 0})).state, PenState::kOutOfRange);
+  const PenSample gone = only(device({0x02, 0x00, 0x0F, 0x50, 0x00, 0x07, 0x68, 0x40}));
+  EXPECT_EQ(gone.state, PenState::kOutOfRange);
+  EXPECT_EQ(gone.raw.x, hover.raw.x) << "where it left";
+  EXPECT_EQ(gone.y_mm, hover.y_mm);
+  EXPECT_THAT(device({0x02, 0, 0, 0, 0, 0, 0, 0}), IsEmpty());
 
   EXPECT_EQ(only(device({0x02, 0x40, 1, 1, 0x20, 1, 1, 0x40})).tool, Tool::kEraser);
   const auto pen_after_all = device({0x02, 0x40, 1, 1, 0x00, 1, 1, 0x40});
