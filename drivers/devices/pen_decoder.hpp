@@ -32,8 +32,8 @@ struct PenRange {
 /// the device's row in the tables, else the pen that its descriptor explains. Only legal state
 /// transitions come out (PenStateMachine).
 ///
-/// decode() allocates nothing, never fails and uses + - * / only: the same reports give samples of
-/// the same bits on every machine. Movable, not copyable. Not thread-safe.
+/// decode() allocates nothing, never fails and uses + - * / and square roots only: the same reports
+/// give samples of the same bits on every machine. Movable, not copyable. Not thread-safe.
 class PenDecoder {
  public:
   /// A decoder for the device with these USB ids and this report descriptor (empty: unknown). A

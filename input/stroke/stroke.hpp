@@ -25,8 +25,8 @@ struct Stroke {
   DeviceIndex device = 0;
   Tool tool = Tool::kPen;
   PenAxes axes;  ///< axes that every point has
-  bool closed_by_lift =
-      true;  ///< false: the stream ended, or a limit cut it, before the pen lifted
+  /// False: the stream ended, or a limit cut it, before the pen lifted.
+  bool closed_by_lift = true;
   std::vector<StrokePoint> points;
 };
 
