@@ -20,8 +20,6 @@ constexpr double kTurningPen = 0.5;
 
 double to_seconds(std::chrono::microseconds t) { return static_cast<double>(t.count()) * 1e-6; }
 
-double length(PlanePoint a) noexcept { return std::sqrt(a.x * a.x + a.y * a.y); }
-
 /// 0 to 1 over 0..1 with minimum jerk.
 double ease(double u) noexcept {
   u = std::clamp(u, 0.0, 1.0);

@@ -8,8 +8,6 @@
 namespace limn::firmware {
 namespace {
 
-double length(PlanePoint a) noexcept { return std::sqrt(a.x * a.x + a.y * a.y); }
-
 /// A 2x2 matrix by rows, acting on the pair (velocity, acceleration) of a knot.
 struct Block {
   double a = 0, b = 0, c = 0, d = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct PlanePoint {
 constexpr PlanePoint operator+(PlanePoint a, PlanePoint b) { return {a.x + b.x, a.y + b.y}; }
 constexpr PlanePoint operator-(PlanePoint a, PlanePoint b) { return {a.x - b.x, a.y - b.y}; }
 constexpr PlanePoint operator*(double factor, PlanePoint a) { return {factor * a.x, factor * a.y}; }
+inline double length(PlanePoint a) noexcept { return std::sqrt(a.x * a.x + a.y * a.y); }
 
 /// The movement from rest to rest through given points at given times that has the least integral
 /// of squared jerk, which is how an arm moves a hand:

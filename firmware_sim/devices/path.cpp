@@ -17,8 +17,7 @@ Path line(const Placement& place, PlanePoint from, PlanePoint to) {
   const PlanePoint start = place(from);
   const PlanePoint end = place(to);
   const PlanePoint across = end - start;
-  const double length_mm = std::sqrt(across.x * across.x + across.y * across.y);
-  const int steps = std::max(1, static_cast<int>(length_mm / kStepMm));
+  const int steps = std::max(1, static_cast<int>(length(across) / kStepMm));
   Path path;
   for (int i = 0; i < steps; ++i) {
     path.push_back(start + (static_cast<double>(i) / steps) * across);

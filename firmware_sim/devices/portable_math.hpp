@@ -7,10 +7,10 @@ namespace limn::firmware {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-/// sin(x), |x| <= 1e4.
+/// sin(x), |x| <= 1e3.
 double portable_sin(double x) noexcept;
 
-/// cos(x), |x| <= 1e4.
+/// cos(x), |x| <= 1e3.
 double portable_cos(double x) noexcept;
 
 /// Natural logarithm of x, 1e-300 <= x <= 1e300.

@@ -10,7 +10,7 @@
 namespace limn::firmware {
 
 /// Kind of a Collection item [HID 1.11, 6.2.2.6].
-enum class CollectionKind : std::uint8_t { kPhysical = 0x00, kApplication = 0x01, kLogical = 0x02 };
+enum class CollectionKind : std::uint8_t { kPhysical = 0x00, kApplication = 0x01 };
 
 /// Data part of an Input item [HID 1.11, 6.2.2.5], as a type of its own: it goes into input() and
 /// nowhere else. All are Variable and Absolute, as the fields of tablets and 3D mice are.

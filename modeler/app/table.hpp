@@ -29,8 +29,6 @@ class Table {
   /// Precondition: as many cells as columns.
   void add(std::vector<Cell> row);
 
-  std::size_t row_count() const noexcept { return rows_.size(); }
-
   /// The whole table: aligned text, a JSON array of objects, one object a line, or CSV.
   std::string print(OutputFormat format) const;
 

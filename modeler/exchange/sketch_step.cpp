@@ -42,8 +42,7 @@
 namespace limn {
 namespace {
 
-/// Distance in mm below which a reader may take points for the same: limn's kGeometric would be
-/// finer than what most modelers accept.
+/// Distance in mm below which a reader may take points for the same: what most modelers work to.
 constexpr double kUncertaintyMm = 1e-7;
 
 constexpr const char* kTimeStamp = "1970-01-01T00:00:00";

@@ -53,7 +53,6 @@ class SegmentSpline {
   using Samples = SegmentSamples<kDimension>;
 
   const std::vector<double>& breaks() const noexcept { return breaks_; }
-  const std::vector<double>& knots() const noexcept { return knots_; }
   const std::vector<Point>& points() const noexcept { return points_; }
   Point third_derivative(int s) const noexcept { return 6.0 * span_curve(s).power[3]; }
   Point tangent_at_begin(int s) const noexcept {

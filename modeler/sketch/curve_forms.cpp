@@ -10,7 +10,7 @@
 //     P_i = b(t_{i+1}, .., t_{i+p})
 //
 // where b belongs to any span that P_i takes part in: so the control points of the same polynomial
-// on other knots are blossom values at those knots. [Ramshaw, Blossoms are polar forms, 1989]
+// on other knots are blossom values at those knots. [Ramshaw89]
 
 namespace limn {
 namespace {

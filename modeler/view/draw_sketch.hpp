@@ -10,7 +10,7 @@ namespace limn {
 
 /// Draws the sketch's layers, from the bottom: control polygons, ink, curves, control points,
 /// corners, annotation. The one routine behind all formats.
-/// Error: kLimit for curves above degree 3 (before anything of the layer is drawn).
+/// Error: kLimit for curves above degree 3 (before anything is drawn).
 Expected<void> draw_sketch(const Sketch& sketch, const Page& page, const PictureOptions& options,
                            Canvas& canvas);
 

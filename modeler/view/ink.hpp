@@ -11,7 +11,7 @@ namespace limn {
 
 /// Width of ink along a curve: w(u), a monotone piecewise cubic (C1, no overshoot) through a
 /// simplified pressure profile. Outside its knots it stays constant.
-/// Source: Fritsch and Carlson, Monotone piecewise cubic interpolation, 1980.
+/// Source: [FC80].
 class InkWidth {
  public:
   /// The same width everywhere.

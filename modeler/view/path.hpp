@@ -21,7 +21,6 @@ class Path {
   }
   void close() { verbs_.push_back(Verb::kClose); }
 
-  bool empty() const noexcept { return verbs_.empty(); }
   const std::vector<Verb>& verbs() const noexcept { return verbs_; }
   /// One point a move or line, three a cubic, none a close, in the order of the verbs.
   const std::vector<Eigen::Vector2d>& points() const noexcept { return points_; }

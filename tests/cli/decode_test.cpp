@@ -71,7 +71,7 @@ TEST(Decode, TextIsOneLineASample) {
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 15) << "a heading and 14 samples";
 }
 
-TEST(Decode, AbsentRecordingOfASample) {
+TEST(Decode, ARecordingWithoutSamplesIsAnEmptyArray) {
   const CommandRun run = run_limn({"decode", "-", "--format", "json"}, small_pen_header());
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(json::parse(run.out), json::array());
