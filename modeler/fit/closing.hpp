@@ -45,9 +45,9 @@ Polyline<kDimension> unrolled(const Polyline<kDimension>& line, std::size_t& lea
   out.noise = line.noise;
   for (std::size_t i = 0; i < round + 2 * lead; ++i) {
     const std::size_t turned = i + round - lead;
-    const double turns = static_cast<double>(turned / round) - 1;
+    const std::size_t rounds = turned / round;  // 1 from the stroke's beginning to its end
     out.points.push_back(line.points[turned % round]);
-    out.clock.push_back(line.clock[turned % round] + turns * period);
+    out.clock.push_back(line.clock[turned % round] + (static_cast<double>(rounds) - 1) * period);
   }
   out.smoothed = smooth(out.points, kSmoothingReach * out.noise);
   return out;
