@@ -138,7 +138,8 @@ std::optional<LinearMap> physical_map(const Field& field, Quantity wanted) noexc
   const std::int64_t scaled_minimum = physical.minimum * logical_span;
   if (scaled_minimum % physical_span == 0) {
     // Zero lies on a count, which then gives exactly 0: an upright pen has no tilt.
-    map.origin = static_cast<double>(field.logical.minimum - scaled_minimum / physical_span);
+    const std::int64_t counts_to_zero = scaled_minimum / physical_span;
+    map.origin = static_cast<double>(field.logical.minimum - counts_to_zero);
   } else {
     map.origin = static_cast<double>(field.logical.minimum);
     map.offset = scale_by_ten(static_cast<double>(physical.minimum), field.unit_exponent) * unit;
