@@ -42,7 +42,7 @@ Expected<void> LineTraceReader::step() {
   if (!line) return tl::unexpected(line.error());
   finished_ = !line->has_value();
   if (!finished_) number_ = (*line)->number;
-  const auto taken = finished_ ? finish() : take_checked(**line);
+  auto taken = finished_ ? finish() : take_checked(**line);
   if (!taken) {
     if (!salvage_) return taken;
     add_damage(taken.error(), finished_ ? 0 : 1);

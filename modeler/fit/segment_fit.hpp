@@ -158,6 +158,18 @@ class SegmentFitter {
     return span_mass(std::max(error - noise_, kLeastShare * error), target - noise_);
   }
 
+  /// What follow_bends() changes.
+  struct State {
+    SegmentSamples<kDimension> samples;
+    Spline spline;
+    double worst;
+    double closing_leg;
+  };
+
+  static double total_mass(const std::vector<double>& mass) {
+    return std::accumulate(mass.begin(), mass.end(), 0.0);
+  }
+
   void initial_fit();
   bool hopelessly_dense() const noexcept {
     constexpr int kSamplesPerSpan = 3;
@@ -291,7 +303,8 @@ std::vector<double> SegmentFitter<kDimension>::bends() const {
 /// Gives each leg a share of the parameter in proportion to length times curvature^(1/3), as affine
 /// arc length does: on it a parabola is a polynomial and an ellipse turns evenly, and pens (whose
 /// speed falls with the same power of curvature [LTV83]) move about evenly. A floor keeps straight
-/// parts going by length.
+/// parts going by length. Taken back where the shape then needs no fewer spans: along a straight
+/// stroke the bends are noise.
 template <int kDimension>
 void SegmentFitter<kDimension>::follow_bends() {
   constexpr double kPower = 1.0 / 3;
@@ -327,13 +340,24 @@ void SegmentFitter<kDimension>::follow_bends() {
   }
   breaks.push_back(mapped.back());
   if (static_cast<int>(breaks.size()) <= least_spans()) return;
+  const double old_closing_leg = closing_leg_;
   if (ends_.periodic) closing_leg_ = mapped.back() - mapped[old.size() - 1];
   mapped.resize(old.size());
+  const State before{samples_, spline_, worst_, old_closing_leg};
+  const double cost = total_mass(masses_by_shape());
   samples_.u = std::move(mapped);
   spline_.set_breaks(std::move(breaks), ends_.periodic);
-  if (!solve(1.0)) return;
-  project();
-  keep_if_within();
+  if (solve(1.0)) {
+    project();
+    if (total_mass(masses_by_shape()) < cost) {
+      keep_if_within();
+      return;
+    }
+  }
+  samples_ = before.samples;
+  spline_ = before.spline;
+  worst_ = before.worst;
+  closing_leg_ = before.closing_leg;
 }
 
 template <int kDimension>
@@ -389,7 +413,7 @@ template <int kDimension>
 bool SegmentFitter<kDimension>::place_by_shape() {
   constexpr double kRoundingDown = 0.3;  // of the last, partial span
   const auto mass = masses_by_shape();
-  const double total = std::accumulate(mass.begin(), mass.end(), 0.0);
+  const double total = total_mass(mass);
   const double wanted = std::ceil(total - kRoundingDown);
   if (!(wanted < spline_.spans())) return true;
   const int count = std::max(least_spans(), static_cast<int>(wanted));
