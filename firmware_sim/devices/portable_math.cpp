@@ -47,8 +47,14 @@ double portable_log(double x) noexcept {
 double portable_cbrt(double x) noexcept {
   // Scaled to 1..8, where Newton's steps from 1.5 converge to full precision in six.
   double scale = 1;
-  for (; x > 8; x *= 0.125) scale *= 2;
-  for (; x < 1; x *= 8) scale *= 0.5;
+  while (x > 8) {
+    x *= 0.125;
+    scale *= 2;
+  }
+  while (x < 1) {
+    x *= 8;
+    scale *= 0.5;
+  }
   double root = 1.5;
   for (int i = 0; i < 6; ++i) root -= (root - x / (root * root)) / 3;
   return root * scale;

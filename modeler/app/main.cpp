@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <exception>
 #include <string>
 
 #include "modeler/app/command.hpp"
@@ -166,4 +167,11 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace limn::app
 
-int main(int argc, char** argv) { return limn::app::run(argc, argv); }
+int main(int argc, char** argv) {
+  try {
+    return limn::app::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "limn: %s; free some memory or give less input\n", error.what());
+    return limn::app::kFailed;
+  }
+}

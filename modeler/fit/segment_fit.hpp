@@ -29,7 +29,8 @@ struct Segment {
 
 /// Fits one segment within a tolerance at every sample, with few spans:
 ///
-///  1. plain least squares on many spans, which cannot lose the way (initial_fit);
+///  1. plain least squares, failing spans halved until it is nearly there (initial_fit): few spans
+///     average the noise out, which would otherwise ask for more of them;
 ///  2. parameters that advance more where the curve bends (follow_bends);
 ///  3. knots where the shape needs them, by the jumps of its third derivative (place_by_shape);
 ///  4. tangent distance minimisation, samples sliding, knots moved by measured errors until every
@@ -61,7 +62,7 @@ class SegmentFitter {
   bool run() {
     initial_fit();
     follow_bends();
-    if (hopelessly_dense() || !place_by_shape() || !reach_tolerance()) {
+    if (!place_by_shape() || !reach_tolerance()) {
       if (!has_best_ && !interpolate()) return false;
     }
     remove_knots();
@@ -171,11 +172,6 @@ class SegmentFitter {
   }
 
   void initial_fit();
-  bool hopelessly_dense() const noexcept {
-    constexpr int kSamplesPerSpan = 3;
-    return worst_ > tolerance_ &&
-           static_cast<std::size_t>(spline_.spans()) * kSamplesPerSpan > sample_count();
-  }
   void set_breaks_at(const std::vector<std::size_t>& sites, const std::vector<double>& parameters);
   bool split_failing_sites(std::vector<std::size_t>& sites) const;
   void follow_bends();
@@ -252,15 +248,11 @@ bool SegmentFitter<kDimension>::split_failing_sites(std::vector<std::size_t>& si
 
 template <int kDimension>
 void SegmentFitter<kDimension>::initial_fit() {
-  constexpr std::size_t kSamplesPerSpan = 8;
-  constexpr int kMostSplits = 2;
-  const std::size_t last = sample_count() - (ends_.periodic ? 0 : 1);
-  std::vector<std::size_t> sites;
-  for (std::size_t i = 0; i + kSamplesPerSpan / 2 < last; i += kSamplesPerSpan) sites.push_back(i);
-  if (sites.empty()) sites.push_back(0);
-  sites.push_back(last);
+  constexpr double kNearly = 2;                // in tolerances: sliding takes care of the rest
+  constexpr std::size_t kSamplesPerSpan = 10;  // with fewer, a span may follow noise
+  std::vector<std::size_t> sites = {0, sample_count() - (ends_.periodic ? 0 : 1)};
   const auto parameters = samples_.u;
-  for (int split = 0;; ++split) {
+  for (;;) {  // each round halves the spans that fail
     set_breaks_at(sites, parameters);
     samples_.u = parameters;
     if (!solve(1.0)) {
@@ -268,8 +260,7 @@ void SegmentFitter<kDimension>::initial_fit() {
       return;
     }
     project();
-    constexpr double kGoodEnough = 2;  // sliding takes care of the rest
-    if (split == kMostSplits || worst_ <= kGoodEnough * tolerance_) break;
+    if (worst_ <= kNearly * tolerance_ || sites.size() * kSamplesPerSpan > sample_count()) break;
     if (!split_failing_sites(sites)) break;
   }
   estimate_noise();
@@ -435,7 +426,7 @@ bool SegmentFitter<kDimension>::reach_tolerance() {
       if (!iterate(kSliding)) return false;
       continue;
     }
-    if (within) return true;
+    if (has_best_) return true;  // with more spans than hoped for: remove_knots() goes on from it
     const bool converging = worst_ < kNearly * tolerance_ && worst_ < kProgress * last;
     last = worst_;
     if (!converging) grow_failing_ranges();
@@ -620,9 +611,10 @@ void SegmentFitter<kDimension>::remove_knots() {
   constexpr std::array<Cut, 8> kCuts = {
       {{6, 0}, {4, 0}, {5, 2}, {7, 0}, {6, 3}, {4, 2}, {5, 0}, {8, 4}}};
   constexpr std::size_t kShortSegment = 300;  // samples
-  constexpr std::size_t kLongRounds = 4;
+  constexpr std::size_t kLongRounds = 2;
   constexpr std::size_t kMostRounds = 24;
-  constexpr int kWorthwhile = 25;  // one span in so many: beyond the rounds above, on with it
+  constexpr int kRestorations = 2;
+  constexpr int kWorthwhile = 12;  // one span in so many: beyond the rounds above, on with it
   constexpr double kNearly = 1.3;  // in tolerances: one more iteration may do
   const std::size_t rounds = sample_count() < kShortSegment ? kCuts.size() : kLongRounds;
   int before = best_.spans() * 2;
@@ -643,12 +635,13 @@ void SegmentFitter<kDimension>::remove_knots() {
       if (!iterate(kSliding)) return;
       if (keep_if_within()) continue;
     }
-    if (!restore_failing(removal)) continue;
-    spline_.set_breaks(join(removal), ends_.periodic);
-    if (!iterate(kSliding)) return;
-    if (keep_if_within()) continue;
-    if (!iterate(kSliding)) return;
-    keep_if_within();
+    for (int k = 0; k < kRestorations && restore_failing(removal); ++k) {
+      spline_.set_breaks(join(removal), ends_.periodic);
+      if (!iterate(kSliding)) return;
+      if (keep_if_within()) break;
+      if (!iterate(kSliding)) return;
+      if (keep_if_within()) break;
+    }
   }
 }
 
