@@ -34,7 +34,8 @@ struct Segment {
 ///  2. parameters that advance more where the curve bends (follow_bends);
 ///  3. knots where the shape needs them, by the jumps of its third derivative (place_by_shape);
 ///  4. tangent distance minimisation, samples sliding, knots moved by measured errors until every
-///     sample is within tolerance (reach_tolerance);
+///     sample is within tolerance (reach_tolerance); where that loses its way, the same once more
+///     from the first fit, with knots only added;
 ///  5. failing that, knots at the samples themselves, up to interpolation (interpolate);
 ///  6. windows of spans that can do with one span less lose it, and those that then fail get it
 ///     back (remove_knots).
@@ -49,7 +50,8 @@ class SegmentFitter {
 
   /// `least_gap`: nearest that two knots may lie.
   SegmentFitter(Segment<kDimension> segment, double tolerance, double least_gap)
-      : samples_(segment.points, std::move(segment.parameters)),
+      : samples_(segment.points, segment.parameters),
+        smoothed_chord_(std::move(segment.parameters)),
         chord_(std::move(segment.chord)),
         closing_leg_(segment.closing_leg),
         chord_closing_leg_(segment.closing_leg),
@@ -60,11 +62,14 @@ class SegmentFitter {
   /// False where no cubic C2 curve within tolerance was found, interpolation included: then double
   /// precision is at its end.
   bool run() {
-    initial_fit();
-    follow_bends();
-    if (!place_by_shape() || !reach_tolerance()) {
-      if (!has_best_ && !interpolate()) return false;
+    // Many ask for few knots but may lose the way; none only adds knots.
+    for (const int redistributions : {4, 0}) {
+      initial_fit();
+      follow_bends();
+      if (redistributions == 0 || place_by_shape()) reach_tolerance(redistributions);
+      if (has_best_) break;
     }
+    if (!has_best_ && !interpolate()) return false;
     remove_knots();
     return true;
   }
@@ -183,7 +188,7 @@ class SegmentFitter {
   void estimate_noise();
   std::vector<double> masses_by_shape() const;
   bool place_by_shape();
-  bool reach_tolerance();
+  void reach_tolerance(int redistributions);
   bool redistribute_all(bool within);
   void grow_failing_ranges();
   bool interpolate();
@@ -194,6 +199,7 @@ class SegmentFitter {
   bool restore_failing(Removal& removal) const;
 
   SegmentSamples<kDimension> samples_;
+  std::vector<double> smoothed_chord_;
   std::vector<double> chord_;
   double closing_leg_;  // in terms of samples_.u
   double chord_closing_leg_;
@@ -251,10 +257,11 @@ void SegmentFitter<kDimension>::initial_fit() {
   constexpr double kNearly = 2;                // in tolerances: sliding takes care of the rest
   constexpr std::size_t kSamplesPerSpan = 10;  // with fewer, a span may follow noise
   std::vector<std::size_t> sites = {0, sample_count() - (ends_.periodic ? 0 : 1)};
-  const auto parameters = samples_.u;
+  closing_leg_ = chord_closing_leg_;
+  std::fill(samples_.weight.begin(), samples_.weight.end(), 1.0);
   for (;;) {  // each round halves the spans that fail
-    set_breaks_at(sites, parameters);
-    samples_.u = parameters;
+    set_breaks_at(sites, smoothed_chord_);
+    samples_.u = smoothed_chord_;
     if (!solve(1.0)) {
       worst_ = std::numeric_limits<double>::infinity();
       return;
@@ -412,27 +419,27 @@ bool SegmentFitter<kDimension>::place_by_shape() {
   return iterate(kCautious) && iterate(trusted_sliding());
 }
 
+/// Iterates until a curve is within tolerance, or a bounded number of rounds. The first
+/// `redistributions` rounds spread all knots, if that takes fewer of them; the others only add.
 template <int kDimension>
-bool SegmentFitter<kDimension>::reach_tolerance() {
-  constexpr int kRedistributions = 4;
-  constexpr int kMostRounds = 12;
+void SegmentFitter<kDimension>::reach_tolerance(int redistributions) {
+  constexpr int kAdditions = 8;
   constexpr double kNearly = 2;      // in tolerances: near enough that iterating may do
   constexpr double kProgress = 0.9;  // an iteration that gains less is not worth repeating
   double last = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < redistributions + kAdditions; ++round) {
     const bool within = keep_if_within();
-    if (round < kRedistributions) {
-      if (!redistribute_all(within)) return true;
-      if (!iterate(kSliding)) return false;
+    if (round < redistributions) {
+      if (!redistribute_all(within) || !iterate(kSliding)) return;
       continue;
     }
-    if (has_best_) return true;  // with more spans than hoped for: remove_knots() goes on from it
+    if (has_best_) return;  // perhaps with more spans than hoped for: remove_knots() goes on
     const bool converging = worst_ < kNearly * tolerance_ && worst_ < kProgress * last;
     last = worst_;
     if (!converging) grow_failing_ranges();
-    if (!iterate(converging ? trusted_sliding() : kSliding)) return false;
+    if (!iterate(converging ? trusted_sliding() : kSliding)) return;
   }
-  return keep_if_within();
+  keep_if_within();
 }
 
 /// Spreads all knots anew, by measured errors. False if the curve is within tolerance and its knots
