@@ -31,6 +31,31 @@ function(limn_set_flags target)
   endif()
 endfunction()
 
+# What most sources include.
+set(LIMN_STANDARD_HEADERS <algorithm> <array> <cmath> <cstdint> <memory> <optional> <span> <string>
+                          <string_view> <utility> <vector>)
+
+# limn_precompile(TARGET SET HEADERS ..): parses the headers once for all targets of one SET, where
+# LIMN_PRECOMPILE is on. The release and clang presets do without, so that no source comes to need it.
+function(limn_precompile target set)
+  if(NOT LIMN_PRECOMPILE)
+    return()
+  endif()
+  get_property(first GLOBAL PROPERTY LIMN_PRECOMPILED_${set})
+  if(first)
+    target_precompile_headers(${target} REUSE_FROM ${first})
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+    set_property(GLOBAL PROPERTY LIMN_PRECOMPILED_${set} ${target})
+  endif()
+endfunction()
+
+# limn_leave_unoptimized(SOURCES ..): in debug builds, where the optimiser would take longest.
+function(limn_leave_unoptimized)
+  set_source_files_properties(${ARGN} PROPERTIES
+    COMPILE_OPTIONS $<$<CONFIG:Debug>:-O0> SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
 # limn_add_library(NAME SOURCES .. HEADERS .. LINK .. LINK_PRIVATE ..)
 #
 # Makes the static library limn_NAME, known to users as limn::NAME. HEADERS are public: each must
@@ -54,6 +79,9 @@ function(limn_add_library name)
   target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
                                              FILES ${ARG_HEADERS})
   target_link_libraries(${target} ${scope} ${ARG_LINK})
+  if(ARG_SOURCES)
+    limn_precompile(${target} standard ${LIMN_STANDARD_HEADERS})
+  endif()
   if(ARG_LINK_PRIVATE)
     target_link_libraries(${target} PRIVATE ${ARG_LINK_PRIVATE})
   endif()
@@ -78,25 +106,10 @@ function(limn_add_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} limn_test_support GTest::gmock
                                         GTest::gtest_main)
-  limn_precompile_test_headers(${name})
+  limn_precompile(${name} tests ${PROJECT_SOURCE_DIR}/tests/support/precompiled.hpp)
   string(REGEX REPLACE "_.*" "" label ${name})
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS ${label} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
-endfunction()
-
-# GoogleTest and the standard headers, parsed once for all tests; the clang preset does without, so
-# that no test comes to need it.
-function(limn_precompile_test_headers target)
-  if(NOT LIMN_PRECOMPILE)
-    return()
-  endif()
-  get_property(first GLOBAL PROPERTY LIMN_FIRST_TEST)
-  if(first)
-    target_precompile_headers(${target} REUSE_FROM ${first})
-  else()
-    target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support/precompiled.hpp)
-    set_property(GLOBAL PROPERTY LIMN_FIRST_TEST ${target})
-  endif()
 endfunction()
 
 # limn_add_fuzz_target(NAME SOURCE .. LINK ..)

@@ -3,17 +3,25 @@
 #include <utility>
 #include <vector>
 
-#include "modeler/fit/stroke_fit.hpp"
-
 namespace limn {
+
+namespace fit_detail {
+
+/// Instantiated in stroke_fit_*d.cpp, one unit a dimension: each takes a compiler a while.
+template <int kDimension>
+Expected<CurveFit<kDimension>> fit_stroke(
+    std::span<const Eigen::Matrix<double, kDimension, 1>> positions, std::span<const double> times,
+    const FitOptions& options);
+
+}  // namespace fit_detail
+
 namespace {
 
 /// Dimensions that the fitter is compiled for. The others are fitted in the next one with zeros
 /// appended: coordinates that are zero at every sample stay exactly zero in every control point.
 constexpr int compiled_dimension(int dimension) {
   if (dimension <= 2) return 2;
-  if (dimension == 3) return 3;
-  return dimension <= 6 ? 6 : 10;
+  return dimension == 3 ? 3 : 10;
 }
 
 template <int kFrom, int kTo>
@@ -37,7 +45,7 @@ Expected<CurveFit<kDimension>> fit_curve(
     const FitOptions& options) {
   constexpr int kCompiled = compiled_dimension(kDimension);
   if constexpr (kCompiled == kDimension) {
-    return fit_detail::StrokeFitter<kDimension>(positions, times, options).fit();
+    return fit_detail::fit_stroke<kDimension>(positions, times, options);
   } else {
     using Wide = Eigen::Matrix<double, kCompiled, 1>;
     std::vector<Wide> padded;
@@ -46,7 +54,7 @@ Expected<CurveFit<kDimension>> fit_curve(
       padded.push_back(Wide::Zero());
       padded.back().template head<kDimension>() = p;
     }
-    auto fitted = fit_detail::StrokeFitter<kCompiled>(padded, times, options).fit();
+    auto fitted = fit_detail::fit_stroke<kCompiled>(padded, times, options);
     if (!fitted) return tl::unexpected(std::move(fitted.error()));
     std::vector<Eigen::Matrix<double, kDimension, 1>> points;
     for (const Wide& p : fitted->curve.control_points()) {

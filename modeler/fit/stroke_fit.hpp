@@ -521,10 +521,11 @@ double StrokeFitter<kDimension>::polyline_deviation(const Curve& curve) const {
   return worst;
 }
 
-// One translation unit each; see fit_curve.cpp for the dimensions between.
-extern template class StrokeFitter<2>;
-extern template class StrokeFitter<3>;
-extern template class StrokeFitter<6>;
-extern template class StrokeFitter<10>;
+template <int kDimension>
+Expected<CurveFit<kDimension>> fit_stroke(
+    std::span<const Eigen::Matrix<double, kDimension, 1>> positions, std::span<const double> times,
+    const FitOptions& options) {
+  return StrokeFitter<kDimension>(positions, times, options).fit();
+}
 
 }  // namespace limn::fit_detail

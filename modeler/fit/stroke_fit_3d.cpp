@@ -1,3 +1,4 @@
 #include "modeler/fit/stroke_fit.hpp"
 
-template class limn::fit_detail::StrokeFitter<3>;
+template limn::Expected<limn::CurveFit<3>> limn::fit_detail::fit_stroke<3>(
+    std::span<const Eigen::Matrix<double, 3, 1>>, std::span<const double>, const limn::FitOptions&);

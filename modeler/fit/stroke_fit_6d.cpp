@@ -1,3 +1,0 @@
-#include "modeler/fit/stroke_fit.hpp"
-
-template class limn::fit_detail::StrokeFitter<6>;
