@@ -58,6 +58,12 @@ struct DecodeArguments {
   OutputFormat format = OutputFormat::kText;
 };
 
+struct ReplayArguments {
+  TraceArguments trace;
+  double speed = 1;
+  OutputFormat format = OutputFormat::kText;
+};
+
 struct SketchArguments {
   TraceArguments trace;
   double tolerance_mm = 0.1;
@@ -76,6 +82,7 @@ struct SimulateArguments {
 
 Outcome run_descriptor(const DescriptorArguments& arguments);
 Outcome run_decode(const DecodeArguments& arguments);
+Outcome run_replay(const ReplayArguments& arguments);
 Outcome run_sketch(const SketchArguments& arguments);
 Outcome run_simulate(const SimulateArguments& arguments);
 

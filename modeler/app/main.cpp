@@ -102,6 +102,19 @@ int run(int argc, char** argv) {
   add_format(*decode_command, decode.format);
   decode_command->callback([&] { outcome = run_decode(decode); });
 
+  ReplayArguments replay;
+  CLI::App* replay_command = app.add_subcommand(
+      "replay", "Print a recording's pen samples at the times at which they were made");
+  add_trace(*replay_command, replay.trace);
+  add_value(
+      *replay_command, "--speed",
+      [&replay](const std::string& text) { return parse_speed(text, replay.speed); },
+      "So many times as fast as it was made")
+      ->type_name("X")
+      ->default_str("1");
+  add_format(*replay_command, replay.format);
+  replay_command->callback([&] { outcome = run_replay(replay); });
+
   SketchArguments sketch;
   CLI::App* sketch_command = app.add_subcommand(
       "sketch", "Fit B-spline curves to a recording's strokes; draw them and export them");

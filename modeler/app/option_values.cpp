@@ -49,6 +49,11 @@ std::string parse_length(std::string_view text, double& length_mm) {
   return quoted(text) + " is no length above 0 mm, such as 0.1";
 }
 
+std::string parse_speed(std::string_view text, double& speed) {
+  if (read_all(text, speed) && std::isfinite(speed) && speed > 0) return {};
+  return quoted(text) + " is no factor above 0, such as 2";
+}
+
 std::string parse_seed(std::string_view text, std::uint64_t& seed) {
   if (read_all(text, seed)) return {};
   return quoted(text) + " is no whole number from 0 to 2^64 - 1";

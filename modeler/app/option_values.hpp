@@ -20,6 +20,9 @@ std::string parse_format(std::string_view text, OutputFormat& format);
 /// A finite length above 0, in mm.
 std::string parse_length(std::string_view text, double& length_mm);
 
+/// A finite factor above 0.
+std::string parse_speed(std::string_view text, double& speed);
+
 /// A whole number from 0 to 2^64 - 1.
 std::string parse_seed(std::string_view text, std::uint64_t& seed);
 

@@ -1,0 +1,38 @@
+#include <cstdio>
+
+#include "drivers/devices/trace_decoder.hpp"
+#include "drivers/transport/paced_reader.hpp"
+#include "modeler/app/command.hpp"
+#include "modeler/app/sample_text.hpp"
+#include "modeler/app/standard_output.hpp"
+#include "modeler/app/trace_input.hpp"
+
+namespace limn::app {
+
+Outcome run_replay(const ReplayArguments& arguments) {
+  auto reader = open_trace_input(arguments.trace);
+  if (!reader) return tl::unexpected(std::move(reader.error()));
+  SampleText format(arguments.format, (*reader)->format() != TraceFormat::kStrokeCsv);
+  TraceDecoder decoder(
+      std::make_unique<PacedReader>(std::move(*reader), arguments.speed, monotonic_clock()),
+      {.salvage = arguments.trace.salvage});
+
+  StandardOutput out;
+  format.begin(out.text());
+  for (;;) {
+    // Each sample goes out before the next one is waited for.
+    if (auto written = out.flush(); !written) return written;
+    auto sample = decoder.next();
+    if (!sample) {
+      return in_file(arguments.trace.path, Expected<void>(tl::unexpected(sample.error())));
+    }
+    if (*sample == nullptr) break;
+    format.append(**sample, out.text());
+  }
+  format.end(out.text());
+  if (auto written = out.flush(); !written) return written;
+  std::fprintf(stderr, "%s\n", summarise(decoder.summary()).c_str());
+  return {};
+}
+
+}  // namespace limn::app
