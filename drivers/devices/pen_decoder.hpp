@@ -8,8 +8,10 @@
 
 #include "drivers/devices/generic_pen.hpp"
 #include "drivers/devices/pen_output.hpp"
+#include "drivers/devices/pen_parameters.hpp"
 #include "drivers/devices/pen_spec.hpp"
 #include "drivers/devices/report_class.hpp"
+#include "drivers/devices/vendor_pen_decoder.hpp"
 #include "drivers/devices/wacom_decoder.hpp"
 #include "input/base/error.hpp"
 #include "input/sample/pen_sample.hpp"
@@ -29,8 +31,15 @@ struct PenRange {
 };
 
 /// Report -> PenSamples, one decoder a device (a USB interface). Chosen by what is most specific:
-/// the device's row in the tables, else the pen that its descriptor explains. Only legal state
-/// transitions come out (PenStateMachine).
+/// what the device said when it was initialised, else its row in the tables, else the pen that its
+/// descriptor explains. Rows of reports that the descriptor does not declare count only once such a
+/// report comes (another interface's pen), and UC-Logic's give way to a descriptor that explains
+/// their report, sizes included: that of the tablet as it was plugged in, or one that the Linux
+/// kernel put in its place. Only legal state transitions come out (PenStateMachine).
+///
+/// A pen that leaves silently (PenSpec::leaves_silently) is taken out of range kLeavingTimeout
+/// after its last report, at that very time: a sample of the stream like any other, whoever asks
+/// for it, decode() before a later report or advance().
 ///
 /// decode() allocates nothing, never fails and uses + - * / and square roots only: the same reports
 /// give samples of the same bits on every machine. Movable, not copyable. Not thread-safe.
@@ -42,6 +51,11 @@ class PenDecoder {
   /// descriptor that is needed and broken.
   static Expected<PenDecoder> make(std::uint16_t vendor, std::uint16_t product,
                                    std::span<const std::uint8_t> report_descriptor);
+
+  /// The same with all that is known. `identity.descriptor_bytes` 0: the descriptor's own length.
+  static Expected<PenDecoder> make(const PenIdentity& identity,
+                                   std::span<const std::uint8_t> report_descriptor,
+                                   const PenParameters* parameters = nullptr);
 
   struct Decoded {
     ReportClass kind = ReportClass::kOther;
@@ -59,30 +73,49 @@ class PenDecoder {
     return decoded.kind;
   }
 
+  /// The samples that are due by `now`, in the time of the reports: to be called when none came
+  /// until due(). Valid until the next call.
+  std::span<const PenSample> advance(DeviceIndex device, Timestamp now) noexcept;
+
+  /// When the next sample comes without a report, if one does.
+  std::optional<Timestamp> due() const noexcept {
+    return vendor_ ? vendor_->due() : std::optional<Timestamp>();
+  }
+
   /// The device went away: what is in range leaves, at `time`.
   std::span<const PenSample> disconnect(DeviceIndex device, Timestamp time) noexcept;
 
   /// Whether samples can come at all.
-  bool has_pen() const noexcept { return wacom_.has_value() || !generic_.layouts().empty(); }
+  bool has_pen() const noexcept { return spec() != nullptr || !generic_.layouts().empty(); }
 
-  /// The table's row, or nullptr where the descriptor decides.
-  const PenSpec* spec() const noexcept { return wacom_ ? &wacom_->spec() : nullptr; }
+  /// The table's row (completed by what the device said), or nullptr where the descriptor decides.
+  /// Where rows differ by report, that of the last report. Valid as long as the decoder stays.
+  const PenSpec* spec() const noexcept {
+    if (vendor_ && !speaks_for_itself_) return &vendor_->spec();
+    return wacom_ ? &wacom_->spec() : nullptr;
+  }
 
-  /// All zero without a pen.
+  /// All zero without a pen; of a device with several rows, of spec().
   PenRange range() const noexcept;
 
   /// Illegal state transitions that the device made and that were repaired.
   std::uint64_t repaired_transitions() const noexcept { return output_->machine().repaired(); }
 
  private:
-  explicit PenDecoder(const PenSpec* spec);
+  PenDecoder();
 
   std::optional<WacomDecoder> wacom_;
+  std::optional<VendorPenDecoder> vendor_;
+  bool speaks_for_itself_ = false;  // the descriptor, of no report in vendor_'s rows, and none came
   GenericPen generic_;
   bool numbered_ = false;
   std::array<ReportClass, 256> classes_;  // of the descriptor's input reports, by ID
   std::unique_ptr<PenOutput> output_;
 
+  bool declares(std::uint8_t report_id) const noexcept;
+  void choose_rows(const PenIdentity& identity, const PenParameters* parameters,
+                   bool has_descriptor);
+  void push_due(Timestamp now) noexcept;
   ReportClass class_in_descriptor(std::span<const std::uint8_t> report) const noexcept;
 };
 

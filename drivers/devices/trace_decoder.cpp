@@ -15,6 +15,15 @@ std::uint32_t saturated_sum(std::uint32_t a, std::uint32_t b) noexcept {
   return a + std::min(b, std::numeric_limits<std::uint32_t>::max() - a);
 }
 
+/// A device with several rows shows only by its reports which of them it speaks.
+void describe(const PenDecoder& decoder, TraceDeviceSummary& summary) {
+  const PenSpec* spec = decoder.spec();
+  summary.kind = spec != nullptr     ? std::string(name(spec->family))
+                 : decoder.has_pen() ? "HID pen"
+                                     : "no pen";
+  summary.range = decoder.range();
+}
+
 }  // namespace
 
 struct TraceDecoder::Device {
@@ -80,12 +89,27 @@ TraceSummary TraceDecoder::summary() const {
   for (const auto& device : devices_) {
     summary.devices.push_back(device->summary);
     summary.devices.back().repaired_transitions = device->repaired_before + device->repaired_now();
+    if (device->reports) describe(*device->reports, summary.devices.back());
   }
   return summary;
 }
 
+// Once the trace is over, pens that leave silently leave as if more time went by, in its order.
+// Each step hands out one device's samples; the reader's end comes again for the next.
 TraceDecoder::Step TraceDecoder::take(TraceEnd) {
-  ended_ = true;
+  Device* first = nullptr;
+  std::optional<Timestamp> earliest;
+  for (const auto& device : devices_) {
+    const auto due = device->reports ? device->reports->due() : std::optional<Timestamp>();
+    if (!due || (earliest && *earliest <= *due)) continue;
+    first = device.get();
+    earliest = due;
+  }
+  if (first == nullptr) {
+    ended_ = true;
+    return {};
+  }
+  give(*first, first->reports->advance(first->summary.index, *earliest), *earliest);
   return {};
 }
 
@@ -218,16 +242,15 @@ TraceDecoder::Step TraceDecoder::prepare(Device& device) {
   device.repaired_before += device.repaired_now();
   device.reports.reset();
   device.frames.reset();
-  auto decoder = PenDecoder::make(device.described.vendor, device.described.product,
-                                  device.described.report_descriptor);
+  PenIdentity identity;
+  identity.vendor = device.described.vendor;
+  identity.product = device.described.product;
+  identity.product_name = device.described.name;
+  auto decoder = PenDecoder::make(identity, device.described.report_descriptor);
   device.described.report_descriptor = {};  // a decoder is made once a description
   if (!decoder) return refuse(device, std::move(decoder.error()));
   device.reports.emplace(std::move(*decoder));
-  const PenSpec* spec = device.reports->spec();
-  device.summary.kind = spec != nullptr             ? std::string(name(spec->family))
-                        : device.reports->has_pen() ? "HID pen"
-                                                    : "no pen";
-  device.summary.range = device.reports->range();
+  describe(*device.reports, device.summary);
   return {};
 }
 

@@ -57,7 +57,9 @@ struct TraceDecoderOptions {
 
 /// Trace -> PenSamples of all its devices, in file order, pulled one by one. Sample times are the
 /// file's minus that of its first report, frame or sample. What the trace tells of missing reports
-/// (TraceDamage, "lost N" notes) is added to `lost` of their device's next sample. Constant memory.
+/// (TraceDamage, "lost N" notes) is added to `lost` of their device's next sample. A pen that
+/// leaves silently (PenDecoder) leaves before its device's next report, or at the end. Constant
+/// memory.
 ///
 ///     TraceDecoder decoder(std::move(reader));
 ///     for (;;) {

@@ -39,8 +39,9 @@ constexpr std::size_t needed_bytes(PenFamily family, std::uint8_t report_id) noe
       return 109;
     case F::kIntuosSmallBluetooth:
       return 43;
+    default:
+      return 0;  // not Wacom's
   }
-  return 0;
 }
 
 /// Whether the family's pen speaks in report `id`.
@@ -163,6 +164,8 @@ ReportClass WacomDecoder::decode_pen(Bytes report, Timestamp time, PenOutput& ou
     case F::kTabletPc:
       tablet_pc(report, time, out);
       break;
+    default:
+      break;  // not Wacom's
   }
   return ReportClass::kPen;
 }

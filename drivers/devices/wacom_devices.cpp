@@ -1,7 +1,4 @@
-#include <algorithm>
-#include <array>
-
-#include "drivers/devices/pen_spec.hpp"
+#include "drivers/devices/pen_tables.hpp"
 
 namespace limn {
 namespace {
@@ -166,46 +163,8 @@ constexpr PenSpec kPens[] = {
 };
 // clang-format on
 
-constexpr bool before(const PenSpec& a, const PenSpec& b) {
-  return a.vendor != b.vendor ? a.vendor < b.vendor : a.product < b.product;
-}
-static_assert(std::is_sorted(std::begin(kPens), std::end(kPens), before));
-
 }  // namespace
 
-std::string_view name(PenFamily family) noexcept {
-  static constexpr std::array<std::string_view, kPenFamilyCount> kNames = {"PenPartner",
-                                                                           "Graphire",
-                                                                           "Graphire4",
-                                                                           "Graphire Bluetooth",
-                                                                           "PL",
-                                                                           "Cintiq Partner",
-                                                                           "DTU",
-                                                                           "DTU-1031",
-                                                                           "Intuos",
-                                                                           "Intuos3",
-                                                                           "Intuos4",
-                                                                           "Intuos4 Bluetooth",
-                                                                           "Intuos5",
-                                                                           "Intuos Pro",
-                                                                           "Cintiq",
-                                                                           "Intuos Art",
-                                                                           "Bamboo",
-                                                                           "Intuos Pro 2 Bluetooth",
-                                                                           "Intuos Bluetooth",
-                                                                           "Tablet PC"};
-  return kNames[static_cast<std::size_t>(family)];
-}
-
-std::span<const PenSpec> pen_specs() noexcept { return kPens; }
-
-const PenSpec* find_pen_spec(std::uint16_t vendor, std::uint16_t product) noexcept {
-  PenSpec wanted;
-  wanted.vendor = vendor;
-  wanted.product = product;
-  const auto* found = std::lower_bound(std::begin(kPens), std::end(kPens), wanted, before);
-  if (found == std::end(kPens) || before(wanted, *found)) return nullptr;
-  return found;
-}
+std::span<const PenSpec> wacom_pens() noexcept { return kPens; }
 
 }  // namespace limn

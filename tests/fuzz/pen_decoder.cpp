@@ -62,7 +62,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t length_low = input.byte();
     descriptor = input.take(length_low | static_cast<std::size_t>(input.byte()) << 8);
   }
-  auto decoder = PenDecoder::make(spec.vendor, spec.product, descriptor);
+  PenIdentity identity;
+  identity.vendor = spec.vendor;
+  identity.product = spec.product;
+  identity.firmware = spec.firmware;
+  identity.product_name = spec.product_name;
+  identity.descriptor_bytes = spec.descriptor_bytes;
+  auto decoder = PenDecoder::make(identity, descriptor);
   if (!decoder) {
     fuzz::require(stranger, "a device of the tables needs no descriptor");
     return 0;
@@ -77,11 +83,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   while (!input.empty()) {
     const std::size_t length = input.byte();
     time += std::chrono::milliseconds(input.byte());
+    const auto due = decoder->due();
     const auto decoded = decoder->decode(Report{1, time, input.take(length)});
-    fuzz::require(decoded.kind == ReportClass::kPen || decoded.samples.empty(),
-                  "samples come from pen reports");
+    fuzz::require(decoded.kind == ReportClass::kPen || decoded.samples.empty() ||
+                      (due.has_value() && *due <= time),
+                  "samples come from pen reports and from silence");
+    fuzz::require(!decoder->due() || *decoder->due() > time, "what was due was given");
     laws.check(decoded.samples);
     for (const PenSample& sample : decoded.samples) strokes.push(sample, sink);
+  }
+  if (const auto due = decoder->due()) {
+    const auto left = decoder->advance(1, *due);
+    fuzz::require(!left.empty() && left.back().state == PenState::kOutOfRange, "silence leaves");
+    laws.check(left);
   }
   laws.check(decoder->disconnect(1, time));
   strokes.finish(sink);

@@ -16,8 +16,9 @@ std::vector<test::ReportBytes> many_reports(test::Rng& rng) {
   for (int i = 0; i < 400; ++i) {
     reports.push_back(rng.bytes(static_cast<std::size_t>(rng.integer(0, 120))));
     if (!reports.back().empty() && rng.chance(0.9)) {
-      constexpr std::array<std::uint8_t, 7> kIds = {0x01, 0x02, 0x03, 0x04, 0x10, 0x11, 0x80};
-      reports.back()[0] = kIds[static_cast<std::size_t>(rng.integer(0, 6))];
+      constexpr std::array<std::uint8_t, 11> kIds = {0x01, 0x02, 0x03, 0x04, 0x07, 0x08,
+                                                     0x09, 0x0A, 0x10, 0x11, 0x80};
+      reports.back()[0] = kIds[static_cast<std::size_t>(rng.integer(0, 10))];
     }
   }
   return reports;
@@ -28,11 +29,14 @@ TEST(Allocation, DecodingAReportOfAnyFamilyAllocatesNothing) {
   const auto reports = many_reports(rng);
   std::size_t samples = 0;
   for (const PenSpec& spec : pen_specs()) {
-    auto decoder = PenDecoder::make(spec.vendor, spec.product, {});
+    auto decoder = PenDecoder::make(test::identity_of(spec), {});
     ASSERT_TRUE(decoder);
     const test::AllocGuard guard;
+    Timestamp time{};
     for (const auto& bytes : reports) {
-      decoder->decode(Report{0, {}, bytes}, [&samples](const PenSample&) { ++samples; });
+      time += std::chrono::milliseconds(20);
+      decoder->decode(Report{0, time, bytes}, [&samples](const PenSample&) { ++samples; });
+      samples += decoder->advance(0, time + kLeavingTimeout / 2).size();
     }
     ASSERT_EQ(guard.count(), 0U) << spec.name;
   }

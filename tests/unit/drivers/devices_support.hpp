@@ -18,11 +18,24 @@ using ReportBytes = std::vector<std::uint8_t>;
 constexpr std::uint16_t kWacom = 0x056A;
 constexpr double kDegree = 0.017453292519943295;
 
+/// A device that a row of the tables, with its conditions, stands for.
+inline PenIdentity identity_of(const PenSpec& spec) {
+  PenIdentity identity;
+  identity.vendor = spec.vendor;
+  identity.product = spec.product;
+  identity.product_name = spec.product_name;
+  identity.firmware = spec.firmware;
+  identity.descriptor_bytes = spec.descriptor_bytes;
+  return identity;
+}
+
 /// A decoder and everything it gave.
 class DecodedDevice {
  public:
   DecodedDevice(std::uint16_t vendor, std::uint16_t product, const ReportBytes& descriptor = {})
-      : decoder_(make(vendor, product, descriptor)) {}
+      : decoder_(checked(PenDecoder::make(vendor, product, descriptor))) {}
+  explicit DecodedDevice(const PenIdentity& identity)
+      : decoder_(checked(PenDecoder::make(identity, {}))) {}
 
   /// Decodes one report and returns its samples.
   std::vector<PenSample> operator()(const ReportBytes& bytes, Timestamp time = {}) {
@@ -39,9 +52,7 @@ class DecodedDevice {
   PenDecoder decoder_;
   ReportClass kind_ = ReportClass::kOther;
 
-  static PenDecoder make(std::uint16_t vendor, std::uint16_t product,
-                         const ReportBytes& descriptor) {
-    auto made = PenDecoder::make(vendor, product, descriptor);
+  static PenDecoder checked(Expected<PenDecoder> made) {
     EXPECT_TRUE(made) << made.error().what;
     return std::move(*made);
   }
