@@ -87,6 +87,8 @@ PenSpec row_of(const PenParameters& parameters, const PenIdentity& identity,
       break;
     }
   }
+  // String 100 has 16 bits for a range, to which a display's need not fit.
+  if (is_ugee(parameters.family) && row.x_max > 0xFFFF) return row;
   row.x_max = parameters.x_max;
   row.y_max = parameters.y_max;
   row.pressure_max = parameters.pressure_max;
