@@ -82,6 +82,7 @@ PenSpec row_of(const PenParameters& parameters, const PenIdentity& identity,
   row.family = parameters.family;
   for (std::size_t i = 0; i < forms.count; ++i) {
     const PenSpec& form = *forms.rows[i];
+    if (form.report_id != 0) continue;  // as it reports uninitialised
     if (form.family == parameters.family || (is_ugee(form.family) && is_ugee(parameters.family))) {
       row = form;
       break;

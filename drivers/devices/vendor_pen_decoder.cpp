@@ -1,6 +1,7 @@
 #include "drivers/devices/vendor_pen_decoder.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "drivers/devices/pen_bytes.hpp"
 #include "input/base/expect.hpp"
@@ -101,7 +102,7 @@ ReportClass VendorPenDecoder::decode_form(Bytes report, Timestamp time, PenOutpu
 
 std::optional<Timestamp> VendorPenDecoder::due() const noexcept {
   if (!present_ || !spec().leaves_silently) return std::nullopt;
-  return last_time_ + kLeavingTimeout;
+  return std::min(last_time_, Timestamp::max() - kLeavingTimeout) + kLeavingTimeout;
 }
 
 void VendorPenDecoder::leave(Timestamp time, PenOutput& out) noexcept {
@@ -159,7 +160,8 @@ ReportClass VendorPenDecoder::ugee(Bytes report, Timestamp time, PenOutput& out)
                le16(report, 4) | (wide ? report[11] << 16 : 0));
   std::int32_t pressure = le16(report, 6);
   if (spec().family == F::kUgeeGen2) pressure = (pressure & 0xBFFF) | (report[13] & 1) << 13;
-  set_pressure(sample, pressure & spec().pressure_max);  // 2^n - 1 in every row
+  const auto levels = static_cast<std::uint32_t>(spec().pressure_max) + 1;
+  set_pressure(sample, pressure & static_cast<std::int32_t>(std::bit_ceil(levels) - 1));
   if (report.size() >= 10) set_tilt(sample, signed8(report[8]), signed8(report[9]));
   return in_range(sample, out);
 }

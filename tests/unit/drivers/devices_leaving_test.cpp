@@ -93,6 +93,13 @@ TEST(SilentLeaving, DisconnectionComesAfterIt) {
   EXPECT_FALSE(tablet.decoder().due());
 }
 
+TEST(SilentLeaving, EndsWithTime) {
+  test::DecodedDevice tablet(kHuion, kNew1060Plus);
+  tablet(kHover, Timestamp::max() - 1ms);
+  EXPECT_EQ(tablet.decoder().due(), Timestamp::max());
+  EXPECT_EQ(tablet.decoder().advance(3, Timestamp::max()).size(), 1U);
+}
+
 TEST(SilentLeaving, IsOfTheMarkedRowsOnly) {
   for (const PenSpec& spec : pen_specs()) {
     const bool marked =
