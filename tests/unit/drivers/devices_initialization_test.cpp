@@ -10,6 +10,7 @@
 
 #include "drivers/devices/pen_initialization.hpp"
 #include "tests/support/recordings.hpp"
+#include "tests/support/temp_folder.hpp"
 #include "tests/support/usb_capture.hpp"
 #include "tests/unit/drivers/devices_support.hpp"
 
@@ -313,6 +314,86 @@ TEST(PenInitialization, TabletsThatWereProbedTellTheirParameters) {
   EXPECT_TRUE(initialise(kHuion, 0x006E, read_probe("Huion_New_1060_Plus"))
                   .initializer.parameters()
                   ->frame_buttons);
+}
+
+/// A byte string of numbers, low byte first.
+class FileBytes {
+ public:
+  FileBytes& number(std::uint64_t value, int size) {
+    for (int i = 0; i < size; ++i, value >>= 8) text_ += static_cast<char>(value & 0xFFU);
+    return *this;
+  }
+  FileBytes& bytes(const std::string& more) {
+    text_ += more;
+    return *this;
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+const std::string kGetString = {'\x80', 6, 100, 3, 9, 4, 0, 1};
+
+TEST(UsbCapture, TiesUsbmonsAnswersToTheirRequests) {
+  const auto packet = [](int request, char type, int transfer, int endpoint, bool setup,
+                         const std::string& data) {
+    FileBytes out;
+    out.number(static_cast<std::uint64_t>(request), 8).bytes({type});
+    out.number(static_cast<std::uint64_t>(transfer), 1);
+    out.number(static_cast<std::uint64_t>(endpoint), 1).number(5, 1).number(1, 2);
+    out.number(setup ? 0 : '-', 1).number(0, 1).number(0, 24);
+    out.bytes(setup ? kGetString : std::string(8, '\0')).number(0, 16).bytes(data);
+    return out.text();
+  };
+  FileBytes file;
+  file.number(0xA1B2C3D4, 4).number(0, 16).number(220, 4);
+  for (const std::string& each :
+       {packet(1, 'S', 2, 0x80, true, ""), packet(2, 'S', 2, 0x80, true, ""),
+        packet(2, 'C', 2, 0x80, false, "two"), packet(3, 'C', 1, 0x81, false, "report"),
+        packet(1, 'C', 2, 0x80, false, "one")}) {
+    file.number(0, 8).number(each.size(), 4).number(each.size(), 4).bytes(each);
+  }
+  const test::TempFolder folder;
+  const auto capture = folder.write("usbmon.pcap", file.text());
+  const auto controls = test::read_usb_controls(capture);
+  ASSERT_EQ(controls.size(), 2U);
+  EXPECT_EQ(controls[0].device, 5U);
+  EXPECT_EQ(controls[0].setup[2], 100);
+  EXPECT_EQ(std::string(controls[0].data.begin(), controls[0].data.end()), "one");
+  EXPECT_EQ(std::string(controls[1].data.begin(), controls[1].data.end()), "two");
+  const auto reports = test::read_usb_reports(capture, 5);
+  ASSERT_EQ(reports.size(), 1U);
+  EXPECT_EQ(std::string(reports[0].begin(), reports[0].end()), "report");
+  EXPECT_TRUE(test::read_usb_reports(capture, 6).empty());
+}
+
+TEST(UsbCapture, TiesUsbPcapsAnswersToTheirRequests) {
+  const auto block = [](std::uint32_t type, const std::string& content) {
+    FileBytes out;
+    out.number(type, 4).number(12 + content.size(), 4).bytes(content);
+    out.number(12 + content.size(), 4);
+    return out.text();
+  };
+  const auto packet = [&block](bool from_device, int stage, const std::string& data) {
+    FileBytes out;
+    out.number(28, 2).number(77, 8).number(0, 6).number(from_device ? 1 : 0, 1).number(1, 2);
+    out.number(7, 2).number(0x80, 1).number(2, 1).number(data.size(), 4);
+    out.number(static_cast<std::uint64_t>(stage), 1).bytes(data);
+    FileBytes enhanced;
+    enhanced.number(0, 12).number(out.text().size(), 4).number(out.text().size(), 4);
+    return block(6, enhanced.bytes(out.text()).text());
+  };
+  FileBytes file;
+  file.bytes(block(0x0A0D0D0A, std::string(16, '\0')));
+  file.bytes(block(1, FileBytes().number(249, 2).number(0, 6).text()));
+  file.bytes(packet(false, 0, kGetString)).bytes(packet(true, 1, "answer"));
+  const test::TempFolder folder;
+  const auto controls = test::read_usb_controls(folder.write("usb.pcapng", file.text()));
+  ASSERT_EQ(controls.size(), 1U);
+  EXPECT_EQ(controls[0].device, 7U);
+  EXPECT_EQ(controls[0].setup[2], 100);
+  EXPECT_EQ(std::string(controls[0].data.begin(), controls[0].data.end()), "answer");
 }
 
 /// The control requests of `step` among `controls`, from `from` on; their number past the end.
