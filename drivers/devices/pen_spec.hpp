@@ -60,7 +60,7 @@ struct PenSpec {
   std::int32_t distance_max = 0;  ///< counts; 0: the device gives no distance
   double counts_per_mm = 0;       ///< of both axes, of x where counts_per_mm_y differs
   double counts_per_mm_y = 0;     ///< of y; 0: as x
-  bool tilt = false;              ///< families of this header's second half: the pen gives its tilt
+  bool tilt = false;              ///< the pen gives its tilt (of Wacom's, the family tells)
   /// The pen's leaving is not reported, or only once it is back: PenDecoder supplies it when no
   /// report came for kLeavingTimeout.
   bool leaves_silently = false;
