@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "input/base/time.hpp"
+#include "input/trace/trace.hpp"
+
+namespace limn {
+
+/// What a transport tells while it is drained. Times are of CLOCK_MONOTONIC.
+class TransportSink {
+ public:
+  virtual ~TransportSink() = default;
+  virtual void report(Timestamp time, std::span<const std::uint8_t> bytes) noexcept = 0;
+  virtual void frame(Timestamp time, std::span<const EvdevEvent> events) noexcept = 0;
+  /// The device, the kernel or limn dropped so many reports (frames) here; where nobody counts,
+  /// `estimated` and at least that many.
+  virtual void lost(std::uint32_t count, bool estimated) noexcept = 0;
+};
+
+/// One open device, whatever brings its bytes. Used by one thread at a time.
+class Transport {
+ public:
+  virtual ~Transport() = default;
+
+  /// What it says of itself; `index` is for the owner to give.
+  virtual const TraceDevice& device() const noexcept = 0;
+
+  /// Readable (poll) when drain() has something to do.
+  virtual int poll_descriptor() const noexcept = 0;
+
+  enum class State { kOpen, kGone };
+
+  /// Gives what has come, without waiting, until there is no more or a device that floods has had
+  /// its share of kMostReports. Allocates nothing. kGone: the device went away; only destruction
+  /// makes sense then.
+  virtual State drain(TransportSink& sink) noexcept = 0;
+
+  static constexpr int kMostReports = 128;
+};
+
+/// Devices that come while others are read.
+class Hotplug {
+ public:
+  virtual ~Hotplug() = default;
+  virtual int poll_descriptor() const noexcept = 0;
+  /// What has come since, opened. A device that cannot be opened (yet) is left out.
+  virtual std::vector<std::unique_ptr<Transport>> arrived() = 0;
+};
+
+}  // namespace limn

@@ -1,0 +1,305 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstring>
+#include <mutex>
+#include <thread>
+
+#include "drivers/transport/hidraw_transport.hpp"
+#include "drivers/transport/live_reader.hpp"
+#include "drivers/transport/paced_reader.hpp"
+#include "tests/support/alloc_guard.hpp"
+
+namespace limn::test {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+
+/// The device's end of a transport.
+class FarEnd {
+ public:
+  /// Makes both ends; the transport goes to the caller.
+  explicit FarEnd(TraceDevice device, std::unique_ptr<Transport>& transport) {
+    int ends[2];
+    if (::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends) != 0) std::abort();
+    descriptor_ = ends[0];
+    transport = open_messages(ends[1], std::move(device));
+  }
+  ~FarEnd() { leave(); }
+  FarEnd(const FarEnd&) = delete;
+  FarEnd& operator=(const FarEnd&) = delete;
+
+  void send(std::vector<std::uint8_t> bytes) const {
+    ASSERT_EQ(::write(descriptor_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
+  bool try_send(std::span<const std::uint8_t> bytes) const {
+    return ::send(descriptor_, bytes.data(), bytes.size(), MSG_DONTWAIT) > 0;
+  }
+  void leave() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    descriptor_ = -1;
+  }
+
+ private:
+  int descriptor_ = -1;
+};
+
+TraceDevice pen(std::string path = "usb-1") {
+  TraceDevice device;
+  device.name = "A Pen";
+  device.physical_path = std::move(path);
+  device.bus = 3;
+  device.vendor = 0x1209;
+  device.product = 1;
+  device.report_descriptor = {0x05, 0x0d};
+  return device;
+}
+
+std::unique_ptr<LiveReader> start(std::unique_ptr<Transport> transport,
+                                  std::unique_ptr<Hotplug> hotplug = nullptr) {
+  std::vector<std::unique_ptr<Transport>> devices;
+  if (transport) devices.push_back(std::move(transport));
+  return *LiveReader::start(std::move(devices), std::move(hotplug));
+}
+
+/// One event as text: "described 0 A Pen", "report 0 01 02", "note 0 gone", "end".
+std::string text_of(const TraceEvent& event) {
+  if (const auto* described = std::get_if<DeviceDescribed>(&event)) {
+    return "described " + std::to_string(described->device->index) + ' ' + described->device->name;
+  }
+  if (const auto* report = std::get_if<Report>(&event)) {
+    std::string text = "report " + std::to_string(report->device);
+    for (const auto byte : report->bytes) text += ' ' + std::to_string(byte);
+    return text;
+  }
+  if (const auto* note = std::get_if<TraceNote>(&event)) {
+    return "note " + std::to_string(note->device) + ' ' + std::string(note->text);
+  }
+  return std::holds_alternative<TraceEnd>(event) ? "end" : "other";
+}
+
+std::string next(LiveReader& reader) { return text_of(*reader.next()); }
+
+TEST(LiveReader, GivesWhatADeviceSends) {
+  std::unique_ptr<Transport> transport;
+  FarEnd device(pen(), transport);
+  const auto reader = start(std::move(transport));
+  EXPECT_EQ(next(*reader), "described 0 A Pen");
+  device.send({1, 2, 3});
+  device.send({4});
+  EXPECT_EQ(next(*reader), "report 0 1 2 3");
+  EXPECT_EQ(next(*reader), "report 0 4");
+  device.send({5});
+  device.leave();
+  EXPECT_EQ(next(*reader), "report 0 5");
+  EXPECT_EQ(next(*reader), "note 0 gone");
+  EXPECT_EQ(next(*reader), "end");
+  EXPECT_EQ(next(*reader), "end");
+}
+
+TEST(LiveReader, StampsWhenItReads) {
+  std::unique_ptr<Transport> transport;
+  FarEnd device(pen(), transport);
+  const auto reader = start(std::move(transport));
+  const Timestamp before = monotonic_clock().now();
+  device.send({1});
+  EXPECT_EQ(next(*reader), "described 0 A Pen");
+  const auto event = *reader->next();
+  EXPECT_GE(std::get<Report>(event).time, before);
+  EXPECT_LE(std::get<Report>(event).time, monotonic_clock().now());
+}
+
+TEST(LiveReader, ReadsSeveralDevicesUnderTheirIndices) {
+  std::vector<std::unique_ptr<Transport>> devices(2);
+  FarEnd first(pen("a"), devices[0]);
+  FarEnd second(pen("b"), devices[1]);
+  const auto reader = *LiveReader::start(std::move(devices));
+  EXPECT_EQ(next(*reader), "described 0 A Pen");
+  EXPECT_EQ(next(*reader), "described 1 A Pen");
+  second.send({2});
+  EXPECT_EQ(next(*reader), "report 1 2");
+  first.send({1});
+  EXPECT_EQ(next(*reader), "report 0 1");
+}
+
+TEST(LiveReader, StopsFromAnywhereAndEndsCleanly) {
+  std::unique_ptr<Transport> transport;
+  FarEnd device(pen(), transport);
+  const auto reader = start(std::move(transport));
+  EXPECT_EQ(next(*reader), "described 0 A Pen");
+  std::thread other([&reader] { reader->stop(); });
+  EXPECT_EQ(next(*reader), "end");
+  other.join();
+}
+
+TEST(LiveReader, WaitsNoLongerThanAsked) {
+  std::unique_ptr<Transport> transport;
+  FarEnd device(pen(), transport);
+  const auto reader = start(std::move(transport));
+  EXPECT_EQ(next(*reader), "described 0 A Pen");
+  const Timestamp deadline = monotonic_clock().now() + 5ms;
+  EXPECT_FALSE(reader->next_until(deadline).has_value());
+  EXPECT_GE(monotonic_clock().now(), deadline);
+}
+
+TEST(LiveReader, CountsWhatAFloodDrops) {
+  // Nobody takes events until far more was sent than the ring holds.
+  std::unique_ptr<Transport> transport;
+  FarEnd device(pen(), transport);
+  const auto reader = start(std::move(transport));
+  std::vector<std::uint8_t> report(1000, 7);
+  constexpr std::uint64_t kSent = 5000;
+  for (std::uint64_t i = 0; i < kSent;) {
+    if (device.try_send(report)) {
+      ++i;
+    } else {
+      std::this_thread::sleep_for(1ms);
+    }
+  }
+  std::uint64_t given = 0;
+  std::uint64_t lost = 0;
+  device.send({1});
+  device.leave();
+  for (;;) {
+    const auto event = *reader->next();
+    if (std::holds_alternative<TraceEnd>(event)) break;
+    given += std::holds_alternative<Report>(event) ? 1 : 0;
+    if (const auto* note = std::get_if<TraceNote>(&event);
+        note && note->text.starts_with("lost ")) {
+      lost += std::stoull(std::string(note->text.substr(5)));
+    }
+  }
+  EXPECT_GT(given, 0u);
+  EXPECT_EQ(given + lost, kSent + 1);
+}
+
+TEST(LiveReader, AllocatesNothingForAReport) {
+  std::unique_ptr<Transport> transport;
+  FarEnd device(pen(), transport);
+  const auto reader = start(std::move(transport));
+  EXPECT_EQ(next(*reader), "described 0 A Pen");
+  const std::vector<std::uint8_t> report(20, 7);
+  ASSERT_TRUE(device.try_send(report));
+  (void)reader->next();  // the thread's own first round
+  const AllocGuard guard;
+  for (int i = 0; i < 1000; ++i) {
+    if (!device.try_send(report)) continue;
+    const auto event = reader->next();
+    if (!event || !std::holds_alternative<Report>(*event)) ADD_FAILURE();
+  }
+  EXPECT_EQ(guard.count(), 0u) << "in the caller's thread";
+}
+
+class CountingSink final : public TransportSink {
+ public:
+  void report(Timestamp, std::span<const std::uint8_t>) noexcept override { ++reports; }
+  void frame(Timestamp, std::span<const EvdevEvent>) noexcept override {}
+  void lost(std::uint32_t, bool) noexcept override {}
+  int reports = 0;
+};
+
+TEST(OpenMessages, DrainingAllocatesNothing) {
+  CountingSink sink;
+  std::unique_ptr<Transport> transport;
+  FarEnd device(pen(), transport);
+  for (std::uint8_t i = 0; i < 100; ++i) device.send({i, 2, 3});
+  const AllocGuard guard;
+  EXPECT_EQ(transport->drain(sink), Transport::State::kOpen);
+  EXPECT_EQ(guard.count(), 0u);
+  EXPECT_EQ(sink.reports, 100);
+  device.leave();
+  EXPECT_EQ(transport->drain(sink), Transport::State::kGone);
+}
+
+TEST(OpenMessages, AFloodHasNoMoreThanItsShare) {
+  CountingSink sink;
+  std::unique_ptr<Transport> transport;
+  FarEnd device(pen(), transport);
+  const std::vector<std::uint8_t> report(8, 1);
+  int sent = 0;
+  while (sent <= Transport::kMostReports && device.try_send(report)) ++sent;
+  ASSERT_GT(sent, Transport::kMostReports);
+  EXPECT_EQ(transport->drain(sink), Transport::State::kOpen);
+  EXPECT_EQ(sink.reports, Transport::kMostReports);
+}
+
+/// Devices that the test plugs in.
+class TestHotplug final : public Hotplug {
+ public:
+  TestHotplug() {
+    if (::pipe(ends_) != 0) std::abort();
+  }
+  ~TestHotplug() override {
+    ::close(ends_[0]);
+    ::close(ends_[1]);
+  }
+  int poll_descriptor() const noexcept override { return ends_[0]; }
+  std::vector<std::unique_ptr<Transport>> arrived() override {
+    const std::lock_guard lock(mutex_);
+    char byte = 0;
+    EXPECT_EQ(::read(ends_[0], &byte, 1), 1);
+    return std::move(waiting_);
+  }
+  void plug_in(std::unique_ptr<Transport> transport) {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(transport));
+    EXPECT_EQ(::write(ends_[1], "x", 1), 1);
+  }
+
+ private:
+  int ends_[2];
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Transport>> waiting_;
+};
+
+TEST(LiveReader, ADeviceThatComesBackKeepsItsIndex) {
+  std::unique_ptr<Transport> transport;
+  FarEnd device(pen(), transport);
+  auto hotplug = std::make_unique<TestHotplug>();
+  TestHotplug& port = *hotplug;
+  const auto reader = start(std::move(transport), std::move(hotplug));
+  EXPECT_EQ(next(*reader), "described 0 A Pen");
+  device.leave();
+  EXPECT_EQ(next(*reader), "note 0 gone");
+
+  std::unique_ptr<Transport> other_transport;
+  FarEnd other(pen("usb-2"), other_transport);
+  port.plug_in(std::move(other_transport));
+  EXPECT_EQ(next(*reader), "described 1 A Pen");
+
+  std::unique_ptr<Transport> back_transport;
+  FarEnd back(pen(), back_transport);
+  port.plug_in(std::move(back_transport));
+  EXPECT_EQ(next(*reader), "described 0 A Pen");
+  back.send({9});
+  EXPECT_EQ(next(*reader), "report 0 9");
+  reader->stop();
+  EXPECT_EQ(next(*reader), "end");
+}
+
+TEST(LiveReader, MayBeDroppedWhileDevicesSend) {
+  for (int i = 0; i < 20; ++i) {
+    std::unique_ptr<Transport> transport;
+    FarEnd device(pen(), transport);
+    const auto reader = start(std::move(transport));
+    device.send({1});
+  }
+}
+
+TEST(OpenHidraw, NamesWhatIsWrong) {
+  const auto absent = open_hidraw("/dev/hidraw-absent");
+  ASSERT_FALSE(absent.has_value());
+  EXPECT_EQ(absent.error().what, "cannot be opened: No such file or directory");
+  EXPECT_EQ(absent.error().remedy, "plug the device in and see 'limn devices'");
+  const auto other = open_hidraw("/dev/null");
+  ASSERT_FALSE(other.has_value());
+  EXPECT_EQ(other.error().what, "is no hidraw node");
+}
+
+}  // namespace
+}  // namespace limn::test
