@@ -90,14 +90,26 @@ Expected<void> HidRecorderWriter::write(const Report& report) {
 }
 
 Expected<void> HidRecorderWriter::note(std::string_view text) {
+  lines_.clear();
+  if (auto appended = append_note(text); !appended) return appended;
+  return flush(selected_);
+}
+
+Expected<void> HidRecorderWriter::note(std::string_view text, DeviceIndex device) {
+  begin_device(device);
+  if (auto appended = append_note(text); !appended) return appended;
+  return flush(device);
+}
+
+Expected<void> HidRecorderWriter::append_note(std::string_view text) {
   constexpr std::string_view kPrefix = "#limn";
   if (text.size() + kPrefix.size() + 1 > kMaxLineBytes) {
     return too_large("a note", text.size(), kMaxLineBytes - kPrefix.size() - 1);
   }
-  lines_ = kPrefix;
+  lines_ += kPrefix;
   if (!text.empty()) lines_ += ' ';
   append_text(text);
-  return flush(selected_);
+  return {};
 }
 
 /// Empties lines_ but for a D: where one is needed.

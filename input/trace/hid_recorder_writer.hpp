@@ -29,13 +29,18 @@ class HidRecorderWriter {
   /// kLimit: larger than the reader takes. kOutOfRange: a negative time, which the format lacks.
   Expected<void> write(const Report& report);
 
-  /// Control characters become blanks. kLimit: longer than the reader takes.
+  /// A note about the selected device. Control characters become blanks. kLimit: longer than the
+  /// reader takes.
   Expected<void> note(std::string_view text);
+
+  /// The same about `device`.
+  Expected<void> note(std::string_view text, DeviceIndex device);
 
  private:
   void begin_device(DeviceIndex device);
   void append_bytes(std::span<const std::uint8_t> bytes);
   void append_text(std::string_view text);
+  Expected<void> append_note(std::string_view text);
   Expected<void> flush(std::optional<DeviceIndex> device);
 
   ByteSink& sink_;

@@ -58,6 +58,23 @@ struct DecodeArguments {
   OutputFormat format = OutputFormat::kText;
 };
 
+struct DevicesArguments {
+  bool all = false;  ///< what is no pen, too
+  OutputFormat format = OutputFormat::kText;
+};
+
+struct MonitorArguments {
+  std::string device;  ///< as of RecordArguments
+  double seconds = 0;  ///< 0: until a signal
+  OutputFormat format = OutputFormat::kText;
+};
+
+struct RecordArguments {
+  std::string device;  ///< VID:PID[:N] or a node; empty for all pens
+  std::string output;
+  double seconds = 0;  ///< 0: until a signal
+};
+
 struct ReplayArguments {
   TraceArguments trace;
   double speed = 1;
@@ -82,6 +99,9 @@ struct SimulateArguments {
 
 Outcome run_descriptor(const DescriptorArguments& arguments);
 Outcome run_decode(const DecodeArguments& arguments);
+Outcome run_devices(const DevicesArguments& arguments);
+Outcome run_monitor(const MonitorArguments& arguments);
+Outcome run_record(const RecordArguments& arguments);
 Outcome run_replay(const ReplayArguments& arguments);
 Outcome run_sketch(const SketchArguments& arguments);
 Outcome run_simulate(const SimulateArguments& arguments);

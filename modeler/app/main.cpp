@@ -74,6 +74,22 @@ void add_trace(CLI::App& command, TraceArguments& trace) {
                    "Skip what is damaged and say how much, instead of stopping there");
 }
 
+void add_device(CLI::App& command, std::string& device) {
+  command
+      .add_option("DEVICE", device,
+                  "VID:PID, VID:PID:N (the N-th of them from 0) or a node, as limn devices shows "
+                  "them; all pens unless given")
+      ->type_name("");
+}
+
+void add_seconds(CLI::App& command, double& seconds) {
+  add_value(
+      command, "--seconds",
+      [&seconds](const std::string& text) { return parse_seconds(text, seconds); },
+      "End after so long; by Ctrl-C unless given")
+      ->type_name("S");
+}
+
 int run(int argc, char** argv) {
   CLI::App app{
       "limn turns the bytes of pens into samples, strokes and exact B-spline curves.\n"
@@ -101,6 +117,33 @@ int run(int argc, char** argv) {
   add_trace(*decode_command, decode.trace);
   add_format(*decode_command, decode.format);
   decode_command->callback([&] { outcome = run_decode(decode); });
+
+  DevicesArguments devices;
+  CLI::App* devices_command = app.add_subcommand("devices", "List the pens that are plugged in");
+  devices_command->add_flag("--all", devices.all, "List every HID device");
+  add_format(*devices_command, devices.format);
+  devices_command->callback([&] { outcome = run_devices(devices); });
+
+  MonitorArguments monitor;
+  CLI::App* monitor_command =
+      app.add_subcommand("monitor", "Watch devices: values, rate, jitter, lost reports, latency");
+  add_device(*monitor_command, monitor.device);
+  add_seconds(*monitor_command, monitor.seconds);
+  add_format(*monitor_command, monitor.format);
+  monitor_command->callback([&] { outcome = run_monitor(monitor); });
+
+  RecordArguments record;
+  CLI::App* record_command =
+      app.add_subcommand("record", "Record what devices send, as a hid-recorder file");
+  add_device(*record_command, record.device);
+  record_command
+      ->add_option("-o,--output", record.output,
+                   "The file to create; - is standard output. It grows while recording, so a crash "
+                   "leaves what came before")
+      ->required()
+      ->type_name("FILE");
+  add_seconds(*record_command, record.seconds);
+  record_command->callback([&] { outcome = run_record(record); });
 
   ReplayArguments replay;
   CLI::App* replay_command = app.add_subcommand(

@@ -49,6 +49,12 @@ std::string parse_length(std::string_view text, double& length_mm) {
   return quoted(text) + " is no length above 0 mm, such as 0.1";
 }
 
+std::string parse_seconds(std::string_view text, double& seconds) {
+  constexpr double kLongest = 1e8;
+  if (read_all(text, seconds) && seconds > 0 && seconds <= kLongest) return {};
+  return quoted(text) + " is no duration above 0 s, such as 10";
+}
+
 std::string parse_speed(std::string_view text, double& speed) {
   if (read_all(text, speed) && std::isfinite(speed) && speed > 0) return {};
   return quoted(text) + " is no factor above 0, such as 2";

@@ -20,6 +20,9 @@ std::string parse_format(std::string_view text, OutputFormat& format);
 /// A finite length above 0, in mm.
 std::string parse_length(std::string_view text, double& length_mm);
 
+/// A finite duration above 0, in seconds; at most 10^8 (three years).
+std::string parse_seconds(std::string_view text, double& seconds);
+
 /// A finite factor above 0.
 std::string parse_speed(std::string_view text, double& speed);
 

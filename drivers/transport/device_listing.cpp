@@ -1,0 +1,151 @@
+#include "drivers/transport/device_listing.hpp"
+
+#include <hidapi/hidapi.h>
+#include <libudev.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "drivers/transport/hidraw_transport.hpp"
+
+namespace limn {
+namespace {
+
+constexpr std::size_t kMostDescriptor = 4096;  // Linux takes no more
+
+/// UTF-8 of a wide string; unpaired or oversized code points become '?'.
+std::string narrow(const wchar_t* wide) {
+  std::string out;
+  for (; wide != nullptr && *wide != L'\0'; ++wide) {
+    const auto c = static_cast<std::uint32_t>(*wide);
+    if (c < 0x80) {
+      out += static_cast<char>(c);
+    } else if (c < 0x800) {
+      out += static_cast<char>(0xC0 | (c >> 6));
+      out += static_cast<char>(0x80 | (c & 0x3F));
+    } else if (c < 0x10000 && (c < 0xD800 || c > 0xDFFF)) {
+      out += static_cast<char>(0xE0 | (c >> 12));
+      out += static_cast<char>(0x80 | ((c >> 6) & 0x3F));
+      out += static_cast<char>(0x80 | (c & 0x3F));
+    } else {
+      out += '?';
+    }
+  }
+  return out;
+}
+
+std::string node_name(const std::string& node) { return node.substr(node.rfind('/') + 1); }
+
+/// What sysfs knows of the HID device behind a node.
+void add_from_sysfs(ListedDevice& listed) {
+  const std::string folder = "/sys/class/hidraw/" + node_name(listed.node) + "/device/";
+  std::ifstream descriptor(folder + "report_descriptor", std::ios::binary);
+  std::array<char, kMostDescriptor> bytes;
+  descriptor.read(bytes.data(), bytes.size());
+  listed.device.report_descriptor.assign(bytes.begin(), bytes.begin() + descriptor.gcount());
+  std::ifstream uevent(folder + "uevent");
+  for (std::string line; std::getline(uevent, line);) {
+    const auto value = [&line](std::string_view key) { return line.substr(key.size()); };
+    if (line.starts_with("HID_NAME=")) listed.device.name = value("HID_NAME=");
+    if (line.starts_with("HID_PHYS=")) listed.device.physical_path = value("HID_PHYS=");
+    unsigned bus = 0;
+    if (std::sscanf(line.c_str(), "HID_ID=%x:", &bus) == 1) {
+      listed.device.bus = static_cast<std::uint16_t>(bus);
+    }
+  }
+}
+
+ListedDevice listed_from(const hid_device_info& info) {
+  ListedDevice listed;
+  listed.node = info.path;
+  listed.device.vendor = info.vendor_id;
+  listed.device.product = info.product_id;
+  listed.device.version = info.release_number;
+  listed.device.name = narrow(info.product_string);
+  listed.serial = narrow(info.serial_number);
+  listed.interface_number = info.interface_number;
+  listed.readable = ::access(info.path, R_OK) == 0;
+  add_from_sysfs(listed);
+  return listed;
+}
+
+/// Orders /dev/hidraw9 before /dev/hidraw10.
+bool by_number(const ListedDevice& a, const ListedDevice& b) {
+  return std::pair(a.node.size(), a.node) < std::pair(b.node.size(), b.node);
+}
+
+template <auto kRelease>
+struct Release {
+  template <class T>
+  void operator()(T* object) const noexcept {
+    kRelease(object);
+  }
+};
+using Udev = std::unique_ptr<udev, Release<udev_unref>>;
+using UdevMonitor = std::unique_ptr<udev_monitor, Release<udev_monitor_unref>>;
+using UdevDevice = std::unique_ptr<udev_device, Release<udev_device_unref>>;
+
+class UdevHotplug final : public Hotplug {
+ public:
+  UdevHotplug(Udev context, UdevMonitor monitor, DeviceFilter wanted)
+      : context_(std::move(context)), monitor_(std::move(monitor)), wanted_(std::move(wanted)) {}
+
+  int poll_descriptor() const noexcept override { return udev_monitor_get_fd(monitor_.get()); }
+
+  std::vector<std::unique_ptr<Transport>> arrived() override {
+    std::vector<std::unique_ptr<Transport>> out;
+    while (const UdevDevice event{udev_monitor_receive_device(monitor_.get())}) {
+      const char* action = udev_device_get_action(event.get());
+      const char* node = udev_device_get_devnode(event.get());
+      if (action == nullptr || node == nullptr || std::string_view(action) != "add") continue;
+      auto devices = list_hid_devices();
+      if (!devices) continue;
+      for (const ListedDevice& listed : *devices) {
+        if (listed.node != node || !wanted_(listed)) continue;
+        if (auto opened = open_hidraw(listed.node)) out.push_back(*std::move(opened));
+      }
+    }
+    return out;
+  }
+
+ private:
+  Udev context_;
+  UdevMonitor monitor_;
+  DeviceFilter wanted_;
+};
+
+}  // namespace
+
+Expected<std::vector<ListedDevice>> list_hid_devices() {
+  std::vector<ListedDevice> out;
+  hid_device_info* const first = hid_enumerate(0, 0);  // nothing where there are none
+  for (const hid_device_info* info = first; info != nullptr; info = info->next) {
+    // One entry a collection of the descriptor; the node is what counts.
+    const bool known = std::any_of(out.begin(), out.end(), [info](const ListedDevice& listed) {
+      return listed.node == info->path;
+    });
+    if (!known) out.push_back(listed_from(*info));
+  }
+  hid_free_enumeration(first);
+  std::sort(out.begin(), out.end(), by_number);
+  return out;
+}
+
+Expected<std::unique_ptr<Hotplug>> watch_hid_devices(DeviceFilter wanted) {
+  Udev context(udev_new());
+  UdevMonitor monitor(context ? udev_monitor_new_from_netlink(context.get(), "udev") : nullptr);
+  if (!monitor ||
+      udev_monitor_filter_add_match_subsystem_devtype(monitor.get(), "hidraw", nullptr) < 0 ||
+      udev_monitor_enable_receiving(monitor.get()) < 0) {
+    return fail(ErrorCode::kIo, "", "udev cannot be asked for new devices",
+                "plug devices in beforehand");
+  }
+  return std::make_unique<UdevHotplug>(std::move(context), std::move(monitor), std::move(wanted));
+}
+
+}  // namespace limn

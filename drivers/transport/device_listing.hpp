@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/transport/transport.hpp"
+#include "input/base/error.hpp"
+#include "input/trace/trace.hpp"
+
+namespace limn {
+
+/// A HID device (one USB interface) that the system has, opened or not.
+struct ListedDevice {
+  std::string node;           ///< e.g. "/dev/hidraw3"
+  TraceDevice device;         ///< report_descriptor is empty where sysfs does not show it
+  std::string serial;         ///< the device's own serial number, where it has one
+  int interface_number = -1;  ///< of USB; -1 elsewhere
+  bool readable = false;      ///< whether this user may read the node
+};
+
+/// The HID devices of the system, by node. Reads sysfs and opens none of them.
+/// Error: kIo where the system cannot be asked; kMissing in a build without hidapi.
+Expected<std::vector<ListedDevice>> list_hid_devices();
+
+/// Which of the listed devices somebody wants.
+using DeviceFilter = std::function<bool(const ListedDevice&)>;
+
+/// Tells of wanted HID devices that are plugged in later, opened. Error: kIo, kMissing as above.
+Expected<std::unique_ptr<Hotplug>> watch_hid_devices(DeviceFilter wanted);
+
+}  // namespace limn

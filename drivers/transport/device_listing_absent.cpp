@@ -1,0 +1,19 @@
+// For builds without hidapi or libudev: recordings work, devices do not.
+
+#include "drivers/transport/device_listing.hpp"
+
+namespace limn {
+namespace {
+
+tl::unexpected<Error> absent() {
+  return fail(ErrorCode::kMissing, "", "this build has no hidapi, which finds devices",
+              "build limn where libhidapi-dev and libudev-dev are installed");
+}
+
+}  // namespace
+
+Expected<std::vector<ListedDevice>> list_hid_devices() { return absent(); }
+
+Expected<std::unique_ptr<Hotplug>> watch_hid_devices(DeviceFilter) { return absent(); }
+
+}  // namespace limn

@@ -1,0 +1,204 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "drivers/devices/trace_decoder.hpp"
+#include "drivers/transport/paced_reader.hpp"
+#include "modeler/app/command.hpp"
+#include "modeler/app/live_input.hpp"
+#include "modeler/app/report_timing.hpp"
+#include "modeler/app/sample_text.hpp"
+#include "modeler/app/standard_output.hpp"
+#include "modeler/app/table.hpp"
+
+namespace limn::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Watched {
+  std::string name;
+  std::string id;
+  ReportTiming timing;
+  DurationStatistics latency;  // from a report's time to its sample
+  std::uint64_t lost = 0;
+  bool lost_estimated = false;
+  bool gone = false;
+  std::optional<PenSample> last;
+};
+
+/// Hands the events of live devices on, counts them, and calls for a picture now and then.
+class WatchingReader final : public TraceReader {
+ public:
+  using Show = std::function<void(std::map<DeviceIndex, Watched>&)>;
+
+  WatchingReader(LiveReader& live, Timestamp period, Timestamp end, Show show)
+      : live_(live), period_(period), end_(end), show_(std::move(show)) {}
+
+  TraceFormat format() const noexcept override { return live_.format(); }
+  std::string place() const override { return live_.place(); }
+
+  Expected<TraceEvent> next() override {
+    WaitingClock& clock = monotonic_clock();
+    for (;;) {
+      const Timestamp now = clock.now();
+      if (now >= due_) {
+        if (due_ > Timestamp::zero()) show_(devices);
+        due_ = now + period_;
+      }
+      if (now >= end_) return TraceEnd{};
+      const auto event = live_.next_until(std::min(due_, end_));
+      if (!event) continue;
+      std::visit([this](const auto& content) { count(content); }, *event);
+      return *event;
+    }
+  }
+
+  std::map<DeviceIndex, Watched> devices;
+  Timestamp last_report{};
+
+ private:
+  void count(const DeviceDescribed& described) {
+    Watched& device = devices[described.device->index];
+    char id[16];
+    std::snprintf(id, sizeof id, "%04x:%04x", described.device->vendor, described.device->product);
+    device.id = id;
+    device.name = described.device->name;
+    device.gone = false;
+  }
+  void count(const Report& report) {
+    last_report = report.time;
+    devices[report.device].timing.report(report.time);
+  }
+  void count(const TraceNote& note) {
+    Watched& device = devices[note.device];
+    device.gone |= note.text == "gone";
+    if (!note.text.starts_with("lost")) return;
+    device.lost_estimated |= note.text[4] == '?';
+    device.lost += std::stoull(std::string(note.text.substr(note.text.find(' ') + 1)));
+  }
+  template <class Other>
+  void count(const Other&) {}
+
+  LiveReader& live_;
+  Timestamp period_;
+  Timestamp end_;
+  Show show_;
+  Timestamp due_{};
+};
+
+/// "|  .:#|": each bin's share of the fullest.
+std::string bars(const DurationStatistics& durations) {
+  constexpr std::string_view kHeights = " .:-=+*#";
+  std::uint64_t most = 1;
+  for (const auto count : durations.bins()) most = std::max(most, count);
+  std::string text = "|";
+  for (const auto count : durations.bins()) {
+    // Any count shows: the lowest mark stands for "few", not for "none".
+    const auto height = count == 0 ? 0 : 1 + count * (kHeights.size() - 2) / most;
+    text += kHeights[static_cast<std::size_t>(height)];
+  }
+  return text + '|';
+}
+
+std::string describe(const Watched& device) {
+  char line[256];
+  std::string text = device.id + " " + device.name + (device.gone ? " (gone)" : "") + "\n  ";
+  if (device.last) {
+    const PenSample& s = *device.last;
+    std::snprintf(line, sizeof line, "%-16s x %8.3f  y %8.3f mm",
+                  std::string(name(s.state)).c_str(), s.x_mm, s.y_mm);
+    text += line;
+    if (s.axes.has(PenAxis::kPressure)) {
+      std::snprintf(line, sizeof line, "  pressure %.3f", s.pressure);
+      text += line;
+    }
+  } else {
+    text += "no pen yet";
+  }
+  const DurationStatistics& intervals = device.timing.intervals();
+  std::snprintf(line, sizeof line,
+                "\n  %llu reports, %.1f a second, interval %.3f ms, jitter %.3f ms, %s%llu lost",
+                static_cast<unsigned long long>(device.timing.reports()), device.timing.rate(),
+                intervals.mean_ms(), intervals.deviation_ms(),
+                device.lost_estimated ? "at least " : "",
+                static_cast<unsigned long long>(device.lost));
+  text += line;
+  text += "\n  intervals 1/16 ms .. 64 ms " + bars(intervals);
+  std::snprintf(line, sizeof line, "  latency %.3f ms, longest %.3f ms ", device.latency.mean_ms(),
+                to_seconds(device.latency.longest()) * 1e3);
+  text += line + bars(device.latency) + '\n';
+  return text;
+}
+
+}  // namespace
+
+Outcome run_monitor(const MonitorArguments& arguments) {
+  auto live = open_live_input(arguments.device);
+  if (!live) return tl::unexpected(std::move(live.error()));
+  const StopOnSignal stop(**live);
+  const bool redraws = ::isatty(STDOUT_FILENO) != 0 && arguments.format == OutputFormat::kText;
+  const Timestamp start = monotonic_clock().now();
+  const Timestamp end = arguments.seconds > 0
+                            ? start + Timestamp(static_cast<std::int64_t>(arguments.seconds * 1e9))
+                            : Timestamp::max();
+  std::size_t lines = 0;
+  Outcome written;
+  const auto show = [&](std::map<DeviceIndex, Watched>& devices) {
+    std::string text;
+    if (arguments.format == OutputFormat::kText) {
+      if (redraws && lines > 0) text += "\033[" + std::to_string(lines) + "A\033[J";
+      const std::size_t head = text.size();
+      for (const auto& [index, device] : devices) text += describe(device);
+      lines = static_cast<std::size_t>(
+          std::count(text.begin() + static_cast<std::ptrdiff_t>(head), text.end(), '\n'));
+    } else {
+      Table table({{"t", "t"},
+                   {"device", "device"},
+                   {"id", "id"},
+                   {"name", "name"},
+                   {"reports", "reports"},
+                   {"rate", "rate"},
+                   {"interval_ms", "interval"},
+                   {"jitter_ms", "jitter"},
+                   {"latency_ms", "latency"},
+                   {"latency_max_ms", "longest"},
+                   {"lost", "lost"},
+                   {"lost_estimated", "estimated"},
+                   {"gone", "gone"}});
+      for (const auto& [index, d] : devices) {
+        const auto& intervals = d.timing.intervals();
+        table.add({to_seconds(monotonic_clock().now() - start), std::int64_t{index}, d.id, d.name,
+                   static_cast<std::int64_t>(d.timing.reports()), d.timing.rate(),
+                   intervals.mean_ms(), intervals.deviation_ms(), d.latency.mean_ms(),
+                   to_seconds(d.latency.longest()) * 1e3, static_cast<std::int64_t>(d.lost),
+                   d.lost_estimated, d.gone});
+      }
+      text = table.print(arguments.format);
+    }
+    if (written) written = print(text);
+    if (!written) (*live)->stop();
+  };
+  const Timestamp period = redraws ? Timestamp(100ms) : Timestamp(1s);
+  auto watching = std::make_unique<WatchingReader>(**live, period, end, show);
+  WatchingReader& watched = *watching;
+  TraceDecoder decoder(std::move(watching), {.salvage = true});
+  for (;;) {
+    auto sample = decoder.next();
+    if (!sample) return in_file("", Expected<void>(tl::unexpected(sample.error())));
+    if (*sample == nullptr) break;
+    Watched& device = watched.devices[(*sample)->device];
+    device.last = **sample;
+    device.latency.add(monotonic_clock().now() - watched.last_report);
+  }
+  show(watched.devices);
+  return written;
+}
+
+}  // namespace limn::app

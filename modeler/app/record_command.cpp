@@ -1,0 +1,129 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <optional>
+
+#include "drivers/transport/paced_reader.hpp"
+#include "input/trace/hid_recorder_writer.hpp"
+#include "modeler/app/command.hpp"
+#include "modeler/app/live_input.hpp"
+#include "modeler/app/recording_file.hpp"
+#include "modeler/app/trace_input.hpp"
+
+namespace limn::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// How long a report may wait for the disk. The promise is 100 ms; a disk needs some of that.
+constexpr Timestamp kSyncPeriod = 40ms;
+constexpr Timestamp kProgressPeriod = 200ms;
+
+/// What a recording holds so far.
+struct Counts {
+  std::uint64_t reports = 0;
+  std::uint64_t lost = 0;
+  bool lost_estimated = false;
+  std::uint64_t devices = 0;
+};
+
+/// Writes events with times from the first event's on.
+class Recorder {
+ public:
+  explicit Recorder(ByteSink& sink) : writer_(sink) {}
+  const Counts& counts() const noexcept { return counts_; }
+
+  Expected<void> operator()(const DeviceDescribed& described) {
+    counts_.devices = std::max<std::uint64_t>(counts_.devices, described.device->index + 1U);
+    return writer_.describe(*described.device);
+  }
+  Expected<void> operator()(const Report& report) {
+    if (!start_) start_ = report.time;
+    ++counts_.reports;
+    // A device's first report may have been stamped before another one's that came out first.
+    return writer_.write(
+        {report.device, std::max(Timestamp(0), report.time - *start_), report.bytes});
+  }
+  Expected<void> operator()(const TraceNote& note) {
+    if (const auto blank = note.text.find(' '); note.text.starts_with("lost")) {
+      counts_.lost += std::stoull(std::string(note.text.substr(blank + 1)));
+      counts_.lost_estimated |= note.text[4] == '?';
+    }
+    return writer_.note(note.text, note.device);
+  }
+  /// Nothing else comes from devices.
+  template <class Other>
+  Expected<void> operator()(const Other&) {
+    return {};
+  }
+
+ private:
+  HidRecorderWriter writer_;
+  std::optional<Timestamp> start_;
+  Counts counts_;
+};
+
+std::string summarise(const Counts& counts, Timestamp duration) {
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%.1f s", to_seconds(duration));
+  std::string text = count_of(counts.reports, "report") + " of " +
+                     count_of(counts.devices, "device") + " in " + seconds;
+  if (counts.lost > 0) {
+    text += counts.lost_estimated ? ", at least " : ", ";
+    text += std::to_string(counts.lost) + " lost";
+  }
+  return text;
+}
+
+}  // namespace
+
+Outcome run_record(const RecordArguments& arguments) {
+  auto reader = open_live_input(arguments.device);
+  if (!reader) return tl::unexpected(std::move(reader.error()));
+  auto file = in_file(arguments.output, RecordingFile::create(arguments.output));
+  if (!file) return tl::unexpected(std::move(file.error()));
+  Recorder recorder(*file);
+  const StopOnSignal stop(**reader);
+  const bool shows_progress = ::isatty(STDERR_FILENO) != 0;
+  if (shows_progress) std::fputs("recording; Ctrl-C ends it\n", stderr);
+
+  WaitingClock& clock = monotonic_clock();
+  const Timestamp start = clock.now();
+  const Timestamp end = arguments.seconds > 0
+                            ? start + Timestamp(static_cast<std::int64_t>(arguments.seconds * 1e9))
+                            : Timestamp::max();
+  Timestamp sync_due = Timestamp::max();
+  Timestamp progress_due = shows_progress ? start + kProgressPeriod : Timestamp::max();
+  Expected<void> written;
+  for (bool ended = false; !ended && written;) {
+    const auto event = (*reader)->next_until(std::min({sync_due, progress_due, end}));
+    const Timestamp now = clock.now();
+    if (event) {
+      written = std::visit(recorder, *event);
+      ended = std::holds_alternative<TraceEnd>(*event);
+      if (sync_due == Timestamp::max() && file->dirty()) sync_due = now + kSyncPeriod;
+    }
+    if (written && now >= sync_due) {
+      written = file->sync();
+      sync_due = Timestamp::max();
+    }
+    if (now >= progress_due) {
+      std::fprintf(stderr, "\r\033[K%s", summarise(recorder.counts(), now - start).c_str());
+      progress_due = now + kProgressPeriod;
+    }
+    if (now >= end && !event) ended = true;
+  }
+  if (shows_progress) std::fputs("\r\033[K", stderr);
+  if (written) written = file->sync();
+  if (!written) {
+    written.error().remedy += "; what was recorded before stands";
+    return in_file(arguments.output, std::move(written));
+  }
+  std::fprintf(stderr, "%s\n", summarise(recorder.counts(), clock.now() - start).c_str());
+  return {};
+}
+
+}  // namespace limn::app

@@ -1,0 +1,220 @@
+// `limn devices`, `record` and `monitor` on a hidraw node that umockdev simulates below the C
+// library: sysfs, ioctls and reports as a device and Linux give them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/cli/run_limn.hpp"
+#include "tests/cli/sample_traces.hpp"
+#include "tests/support/recordings.hpp"
+
+namespace limn::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr const char* kUmockdev = "/usr/bin/umockdev-run";
+
+/// The report descriptor of small_pen_header(), as hexadecimal digits.
+std::string descriptor_digits() {
+  const std::string head = small_pen_header();
+  std::string digits;
+  for (const char c : head.substr(6, head.find('\n') - 6)) {  // after "R: 59 "
+    if (c != ' ') digits += static_cast<char>(std::toupper(c));
+  }
+  return digits;
+}
+
+std::string padded(std::string digits, std::size_t bytes) {
+  digits.resize(2 * bytes, '0');
+  return digits;
+}
+
+std::string digits_of(std::string_view text) {
+  std::string digits;
+  for (const char c : text) {
+    digits += "0123456789ABCDEF"[static_cast<unsigned char>(c) >> 4];
+    digits += "0123456789ABCDEF"[static_cast<unsigned char>(c) & 15];
+  }
+  return digits;
+}
+
+/// The small pen on hidraw0, drawing `reports` reports 15 ms apart (umockdev runs closer ones
+/// together).
+class SimulatedPen {
+ public:
+  explicit SimulatedPen(int reports) {
+    const std::string usb = "/devices/pci0000:00/0000:00:14.0/usb1/1-1";
+    const std::string hid = usb + "/1-1:1.0/0003:1209:0001.0001";
+    device_ = folder_
+                  .write("pen.umockdev",
+                         "P: " + hid +
+                             "/hidraw/hidraw0\nN: hidraw0\nE: DEVNAME=/dev/hidraw0\n"
+                             "E: MAJOR=243\nE: MINOR=0\nE: SUBSYSTEM=hidraw\n"
+                             "L: device=../../../0003:1209:0001.0001\n\n"
+                             "P: " +
+                             hid +
+                             "\nE: DRIVER=hid-generic\n"
+                             "E: HID_ID=0003:00001209:00000001\nE: HID_NAME=Small Pen\n"
+                             "E: HID_PHYS=usb-1/input0\nE: HID_UNIQ=\nE: SUBSYSTEM=hid\n"
+                             "H: report_descriptor=" +
+                             descriptor_digits() +
+                             "\n\n"
+                             "P: " +
+                             usb +
+                             "/1-1:1.0\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\n"
+                             "A: bInterfaceNumber=00\\n\n\n"
+                             "P: " +
+                             usb +
+                             "\nN: bus/usb/001/002\nE: DEVTYPE=usb_device\n"
+                             "E: DEVNAME=/dev/bus/usb/001/002\nE: SUBSYSTEM=usb\n"
+                             "A: idVendor=1209\\n\nA: idProduct=0001\\n\nA: bcdDevice=0100\\n\n"
+                             "A: product=Small Pen\\n\nA: manufacturer=Limn\\n\n")
+                  .string();
+    const std::string size = "3B000000";  // 59, little-endian
+    ioctls_ = folder_
+                  .write("pen.ioctl",
+                         "@DEV /dev/hidraw0\nHIDIOCGRAWINFO 0 0300000009120100\n"
+                         "HIDIOCGRDESCSIZE 0 " +
+                             size + "\nHIDIOCGRDESC 0 " + size + padded(descriptor_digits(), 4096) +
+                             "\nHIDIOCGRAWNAME 10 " + padded(digits_of("Small Pen"), 256) +
+                             "\nHIDIOCGRAWPHYS 13 " + padded(digits_of("usb-1/input0"), 256) + "\n")
+                  .string();
+    std::string script;
+    for (int i = 0; i < reports; ++i) {
+      // umockdev's own escapes: ^A is 1, ^C 3, ^@ 0; letters stand for themselves.
+      script += std::string("r ") + (i == 0 ? "200" : "15") + " ^A^C" + static_cast<char>('a' + i) +
+                "^@d^@\n";
+    }
+    script_ = folder_.write("pen.script", script).string();
+  }
+
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  /// Runs limn on it; `before` may hold a command that runs it in turn.
+  CommandRun limn(const std::string& words, const std::string& before = {}) const {
+    // AddressSanitizer wants to be the first library; umockdev's comes before it, harmlessly.
+    return run_shell("export ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0; " +
+                     std::string(kUmockdev) + " -d " + device_ + " -i /dev/hidraw0=" + ioctls_ +
+                     " -s /dev/hidraw0=" + script_ + " -- " + before + " \"$0\" " + words);
+  }
+
+ private:
+  TempFolder folder_;
+  std::string device_;
+  std::string ioctls_;
+  std::string script_;
+};
+
+class LiveDevices : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(kUmockdev)) GTEST_SKIP() << "umockdev is not installed";
+  }
+};
+
+TEST_F(LiveDevices, DevicesNamesPensWithSizeAndNode) {
+  const SimulatedPen pen(0);
+  const CommandRun run = pen.limn("devices --format json");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json rows = json::parse(run.out);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0]["id"], "1209:0001");
+  EXPECT_EQ(rows[0]["node"], "/dev/hidraw0");
+  EXPECT_EQ(rows[0]["name"], "Small Pen");
+  EXPECT_EQ(rows[0]["kind"], "HID pen");
+  EXPECT_EQ(rows[0]["width_mm"], 100.0);
+  EXPECT_FALSE(rows[0].contains("trouble") && !rows[0]["trouble"].is_null());
+}
+
+TEST_F(LiveDevices, RecordsWhatComesAsAFileThatDecodes) {
+  const SimulatedPen pen(10);
+  for (const std::string device : {"", "1209:0001", "1209:1:0", "/dev/hidraw0"}) {
+    const std::string file = pen.path("mine" + std::to_string(device.size()) + ".hid");
+    const CommandRun run = pen.limn("record " + device + " --seconds 1 -o " + file);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(" of 1 device in "));
+    const std::string text = read_file(file);
+    EXPECT_THAT(text,
+                StartsWith("D: 0\n" + small_pen_header().substr(0, small_pen_header().find("I:")) +
+                           "P: usb-1/input0\nI: 3 1209 0001\nE: 0.000000 "));
+    // Where the machine is slow umockdev joins reports, so bytes are counted and not lines.
+    std::size_t bytes = 0;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("E: ")) continue;
+      bytes += std::stoul(line.substr(line.find(' ', 3)));
+    }
+    EXPECT_EQ(bytes, 60u) << text;
+    const CommandRun decoded = run_limn({"decode", file, "--format", "csv"});
+    EXPECT_EQ(decoded.exit_code, 0) << decoded.err;
+    EXPECT_THAT(decoded.out, HasSubstr("in_contact"));
+  }
+}
+
+TEST_F(LiveDevices, RecordNeverWritesOverARecording) {
+  const SimulatedPen pen(1);
+  const std::string file = pen.path("mine.hid");
+  ASSERT_EQ(pen.limn("record --seconds 0.1 -o " + file).exit_code, 0);
+  const std::string before = read_file(file);
+  const CommandRun again = pen.limn("record --seconds 0.1 -o " + file);
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.err, HasSubstr("exists already; choose another name or remove it"));
+  EXPECT_EQ(read_file(file), before);
+}
+
+TEST_F(LiveDevices, RecordEndsCleanlyBySignal) {
+  const SimulatedPen pen(5);
+  const std::string file = pen.path("mine.hid");
+  const CommandRun run = pen.limn("record -o " + file, "timeout --signal=INT 2");
+  EXPECT_THAT(run.err, HasSubstr(" of 1 device in ")) << run.err;
+  EXPECT_THAT(read_file(file), HasSubstr("\nE: 0.000000 "));
+}
+
+TEST_F(LiveDevices, RecordTellsAFullDisk) {
+  const SimulatedPen pen(3);
+  const CommandRun run = pen.limn("record --seconds 1 -o /dev/full");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("/dev/full: cannot write: No space left on device"));
+}
+
+TEST_F(LiveDevices, MonitorCountsAndShowsValues) {
+  const SimulatedPen pen(10);
+  const CommandRun run = pen.limn("monitor --seconds 1 --format jsonl");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::istringstream lines(run.out);
+  json last;
+  for (std::string line; std::getline(lines, line);) last = json::parse(line);
+  EXPECT_EQ(last["id"], "1209:0001");
+  EXPECT_EQ(last["name"], "Small Pen");
+  EXPECT_GT(last["reports"], 0);
+  EXPECT_LE(last["reports"], 10);
+  EXPECT_EQ(last["lost"], 0);
+  const CommandRun text = pen.limn("monitor --seconds 1");
+  EXPECT_THAT(text.out, HasSubstr("in_contact"));
+  EXPECT_THAT(text.out, HasSubstr("latency"));
+}
+
+TEST_F(LiveDevices, SayWhatIsMissing) {
+  const SimulatedPen pen(0);
+  EXPECT_THAT(pen.limn("record 1:2 -o " + pen.path("no.hid")).err,
+              HasSubstr("no device 1:2 is here; plug it in and see 'limn devices'"));
+  EXPECT_THAT(pen.limn("record 1209:1:7 -o " + pen.path("no.hid")).err,
+              HasSubstr("no device 1209:1:7 is here"));
+  const CommandRun word = pen.limn("monitor pen");
+  EXPECT_EQ(word.exit_code, 2);
+  EXPECT_THAT(word.err, HasSubstr("'pen' is no device; give VID:PID, VID:PID:N or a node"));
+  EXPECT_THAT(pen.limn("monitor /dev/null").err, HasSubstr("/dev/null: is no hidraw node"));
+  EXPECT_THAT(pen.limn("monitor /dev/hidraw9").err, HasSubstr("No such file or directory"));
+  EXPECT_FALSE(std::filesystem::exists(pen.path("no.hid")));
+}
+
+}  // namespace
+}  // namespace limn::test
