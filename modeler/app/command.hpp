@@ -63,6 +63,10 @@ struct DevicesArguments {
   OutputFormat format = OutputFormat::kText;
 };
 
+struct DoctorArguments {
+  OutputFormat format = OutputFormat::kText;
+};
+
 struct MonitorArguments {
   std::string device;  ///< as of RecordArguments
   double seconds = 0;  ///< 0: until a signal
@@ -100,6 +104,7 @@ struct SimulateArguments {
 Outcome run_descriptor(const DescriptorArguments& arguments);
 Outcome run_decode(const DecodeArguments& arguments);
 Outcome run_devices(const DevicesArguments& arguments);
+Outcome run_doctor(const DoctorArguments& arguments);
 Outcome run_monitor(const MonitorArguments& arguments);
 Outcome run_record(const RecordArguments& arguments);
 Outcome run_replay(const ReplayArguments& arguments);

@@ -124,6 +124,12 @@ int run(int argc, char** argv) {
   add_format(*devices_command, devices.format);
   devices_command->callback([&] { outcome = run_devices(devices); });
 
+  DoctorArguments doctor;
+  CLI::App* doctor_command = app.add_subcommand(
+      "doctor", "Look for what keeps devices from limn: permissions, rules, other programs");
+  add_format(*doctor_command, doctor.format);
+  doctor_command->callback([&] { outcome = run_doctor(doctor); });
+
   MonitorArguments monitor;
   CLI::App* monitor_command =
       app.add_subcommand("monitor", "Watch devices: values, rate, jitter, lost reports, latency");

@@ -134,6 +134,16 @@ TEST_F(LiveDevices, DevicesNamesPensWithSizeAndNode) {
   EXPECT_FALSE(rows[0].contains("trouble") && !rows[0]["trouble"].is_null());
 }
 
+TEST_F(LiveDevices, DoctorLooksAtEachNode) {
+  const SimulatedPen pen(0);
+  const json rows = json::parse(pen.limn("doctor --format json").out);
+  ASSERT_GE(rows.size(), 3u);
+  EXPECT_EQ(rows[0]["state"], "good");
+  EXPECT_EQ(rows[0]["subject"], "/dev/hidraw0");
+  EXPECT_EQ(rows[0]["what"], "Small Pen");
+  EXPECT_EQ(rows[1]["subject"], "udev rules");
+}
+
 TEST_F(LiveDevices, RecordsWhatComesAsAFileThatDecodes) {
   const SimulatedPen pen(10);
   for (const std::string device : {"", "1209:0001", "1209:1:0", "/dev/hidraw0"}) {
