@@ -30,8 +30,8 @@ const std::vector<Layer>& layers() {
       {"drivers/hid", {"input/base", "input/sample"}, {}},
       {"drivers/devices", {"input", "drivers/hid"}, {}},
       {"drivers/transport",
-       {"input", "drivers/hid", "drivers/devices"},
-       {"libusb-1.0/", "hidapi/", "linux/", "libevdev/"}},
+       {"input"},
+       {"libusb-1.0/", "hidapi/", "linux/", "libevdev/", "libudev.h", "posix", "sys/"}},
 
       {"modeler/base", {"input/base"}, {"Eigen/"}},
       {"modeler/bspline", {"input/base", "modeler/base"}, {"Eigen/"}},
@@ -116,9 +116,9 @@ const std::set<string_view>& standard_headers() {
 
 const std::set<string_view>& posix_headers() {
   static const std::set<string_view> names = {
-      "dirent.h",    "errno.h",    "fcntl.h",     "poll.h",         "pthread.h",  "signal.h",
-      "spawn.h",     "stdlib.h",   "sys/ioctl.h", "sys/resource.h", "sys/stat.h", "sys/time.h",
-      "sys/types.h", "sys/wait.h", "termios.h",   "unistd.h"};
+      "dirent.h",   "errno.h",     "fcntl.h",     "poll.h",         "pthread.h",    "signal.h",
+      "spawn.h",    "stdlib.h",    "sys/ioctl.h", "sys/resource.h", "sys/socket.h", "sys/stat.h",
+      "sys/time.h", "sys/types.h", "sys/wait.h",  "termios.h",      "time.h",       "unistd.h"};
   return names;
 }
 
