@@ -122,7 +122,12 @@ TraceDecoder::Step TraceDecoder::take(const DeviceDescribed& described) {
   device.summary.vendor = described.device->vendor;
   device.summary.product = described.device->product;
   device.stale = true;
-  // A device described anew was replugged: what it held in range is gone.
+  leave(device);  // described anew, it was replugged
+  return {};
+}
+
+/// What the device held in range is gone.
+void TraceDecoder::leave(Device& device) noexcept {
   if (device.reports) {
     give(device, device.reports->disconnect(device.summary.index, device.last_time),
          device.last_time);
@@ -130,7 +135,6 @@ TraceDecoder::Step TraceDecoder::take(const DeviceDescribed& described) {
     give(device, device.frames->disconnect(device.summary.index, device.last_time),
          device.last_time);
   }
-  return {};
 }
 
 TraceDecoder::Step TraceDecoder::take(const Report& report) {
@@ -195,13 +199,20 @@ TraceDecoder::Step TraceDecoder::take(const PenSample& sample) {
 }
 
 TraceDecoder::Step TraceDecoder::take(const TraceNote& note) {
-  constexpr std::string_view kLost = "lost ";
-  if (note.text.substr(0, kLost.size()) != kLost) return {};
-  std::uint32_t count = 0;
-  const char* const end = note.text.data() + note.text.size();
-  const auto parsed = std::from_chars(note.text.data() + kLost.size(), end, count);
-  if (parsed.ec != std::errc{} || parsed.ptr != end) return {};
-  return lose({note.device, count});
+  if (note.text == "gone") {
+    auto found = device(note.device);
+    if (!found) return tl::unexpected(std::move(found.error()));
+    leave(**found);
+    return {};
+  }
+  for (const std::string_view kind : {"lost ", "lost? "}) {  // counted; at least so many
+    if (!note.text.starts_with(kind)) continue;
+    std::uint32_t count = 0;
+    const char* const end = note.text.data() + note.text.size();
+    const auto parsed = std::from_chars(note.text.data() + kind.size(), end, count);
+    if (parsed.ec == std::errc{} && parsed.ptr == end) return lose({note.device, count});
+  }
+  return {};
 }
 
 TraceDecoder::Step TraceDecoder::take(const TraceDamage& damage) {

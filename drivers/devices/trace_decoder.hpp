@@ -57,9 +57,9 @@ struct TraceDecoderOptions {
 
 /// Trace -> PenSamples of all its devices, in file order, pulled one by one. Sample times are the
 /// file's minus that of its first report, frame or sample. What the trace tells of missing reports
-/// (TraceDamage, "lost N" notes) is added to `lost` of their device's next sample. A pen that
-/// leaves silently (PenDecoder) leaves before its device's next report, or at the end. Constant
-/// memory.
+/// (TraceDamage, "lost N" notes) is added to `lost` of their device's next sample; a "gone" note
+/// takes what is in range out of it. A pen that leaves silently (PenDecoder) leaves before its
+/// device's next report, or at the end. Constant memory.
 ///
 ///     TraceDecoder decoder(std::move(reader));
 ///     for (;;) {
@@ -114,6 +114,7 @@ class TraceDecoder {
   Step take(const TraceDamage& damage);
 
   Step lose(const LostReports& reports);
+  void leave(Device& device) noexcept;
   Expected<Device*> device(DeviceIndex index);
   Step prepare(Device& device);
   Step prepare_kernel(Device& device);

@@ -243,6 +243,22 @@ TEST(TraceDecoder, NotesOfLostReportsAreToldWithTheNextSample) {
   EXPECT_EQ(lost_of(trace), (std::vector<std::uint32_t>{4294967295, 2}));
 }
 
+TEST(TraceDecoder, EstimatedLossIsToldToo) {
+  const DecodedTrace trace =
+      decode_trace("N: a\nI: 3 056a 0013\n#limn lost? 1\nE: 1.0 8 02 90 40 1f 20 03 00 00\n");
+  ASSERT_EQ(trace.samples.size(), 1U);
+  EXPECT_EQ(trace.samples[0].lost, 1U);
+}
+
+TEST(TraceDecoder, ADeviceThatIsUnpluggedHasLiftedAndLeft) {
+  const DecodedTrace trace = decode_trace(
+      "N: a\nI: 3 056a 0013\nE: 1.0 8 02 91 40 1f 20 03 ff 01\n#limn gone\n#limn gone\n");
+  ASSERT_FALSE(trace.failed) << trace.error.what;
+  ASSERT_GE(trace.samples.size(), 2U);
+  EXPECT_EQ(trace.samples[trace.samples.size() - 2].state, PenState::kInRange);
+  EXPECT_EQ(trace.samples.back().state, PenState::kOutOfRange);
+}
+
 TEST(TraceDecoder, SalvagedDamageIsCountedAndTheFirstPartsAreKept) {
   std::string text = "N: pen\nI: 3 056a 0013\n";
   for (int i = 0; i < 40; ++i) text += "E: broken line\nE: 1.0 2 01 00\n";
