@@ -12,6 +12,7 @@ using RowSink = std::function<void(const Row&)>;
 /// Each of these measures one area.
 void decode_area(const RowSink& sink);
 void trace_area(const RowSink& sink);
+void transport_area(const RowSink& sink);
 void fit_area(const RowSink& sink);
 
 }  // namespace limn::bench

@@ -25,12 +25,13 @@ constexpr Area kAreas[] = {
      limn::bench::decode_area},
     {"trace", "reading a hid-recorder file: time, and memory for a gigabyte",
      limn::bench::trace_area},
+    {"transport", "replayed and live reports: how late they come", limn::bench::transport_area},
     {"fit", "curves through strokes: time and control points", limn::bench::fit_area},
 };
 
 void list_areas() {
   for (const Area& area : kAreas)
-    std::printf("%-8s %s\n", std::string(area.name).c_str(), std::string(area.what).c_str());
+    std::printf("%-10s %s\n", std::string(area.name).c_str(), std::string(area.what).c_str());
 }
 
 /// Runs one area and prints its rows as they come; returns how many miss their goal.

@@ -74,7 +74,7 @@ const std::vector<Layer>& layers() {
       {"tests",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
        {"gtest/", "gmock/", "benchmark/", "sanitizer/", "Eigen/", "nlohmann/", "cairo",
-        "opencascade", "sisl.h", "posix", "linux/"}},
+        "opencascade", "sisl.h", "posix", "linux/", "sys/"}},
   };
   return table;
 }
