@@ -63,10 +63,7 @@ std::int32_t clamp_count(std::int64_t value) noexcept {
 
 /// The counts into `value`; false where there are none.
 bool get(const hid::FieldReader& reader, Bytes report, std::int64_t& value) noexcept {
-  if (!reader.present()) return false;
-  const auto counts = reader.read(report);
-  value = counts.value_or(0);
-  return counts.has_value();
+  return reader.present() && reader.read(report, value);
 }
 
 void set_axis(PenSample& sample, PenAxis axis, double PenSample::*member, double value) noexcept {

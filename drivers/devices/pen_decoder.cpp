@@ -189,8 +189,10 @@ PenDecoder::Decoded PenDecoder::decode(const Report& report) noexcept {
 }
 
 void PenDecoder::push_due(Timestamp now) noexcept {
-  const auto leaves = due();
-  if (leaves && *leaves <= now) vendor_->leave(*leaves, *output_);
+  if (!vendor_) return;  // of most devices: due() would cost as much as a field
+  if (const auto leaves = vendor_->due(); leaves && *leaves <= now) {
+    vendor_->leave(*leaves, *output_);
+  }
 }
 
 std::span<const PenSample> PenDecoder::advance(DeviceIndex device, Timestamp now) noexcept {

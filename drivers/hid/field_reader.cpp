@@ -69,13 +69,18 @@ std::optional<std::int64_t> FieldReader::read_selection(
   return 0;
 }
 
-std::optional<std::int64_t> FieldReader::read_slowly(
-    std::span<const std::uint8_t> report) const noexcept {
-  if (access_ == Access::kAbsent) return std::nullopt;
-  if (access_ == Access::kSelection) return read_selection(report);
-  const std::int64_t value = with_sign(gather(report.data() + first_byte_, shift_, bit_size_));
-  if (null_state_ && !logical_.contains(value)) return std::nullopt;
-  return value;
+bool FieldReader::read_slowly(std::span<const std::uint8_t> report,
+                              std::int64_t& value) const noexcept {
+  if (access_ == Access::kAbsent) return false;
+  if (access_ == Access::kSelection) {
+    const auto selected = read_selection(report);
+    value = selected.value_or(value);
+    return selected.has_value();
+  }
+  const std::int64_t sent = with_sign(gather(report.data() + first_byte_, shift_, bit_size_));
+  if (null_state_ && !logical_.contains(sent)) return false;
+  value = sent;
+  return true;
 }
 
 std::optional<std::uint64_t> FieldReader::read_bits(

@@ -43,15 +43,24 @@ class FieldReader {
   /// device has nothing to say; without Null State values are given as sent, never clamped).
   /// An unsigned 64-bit element above 2^63-1 comes out negative: use read_bits for serial numbers.
   std::optional<std::int64_t> read(std::span<const std::uint8_t> report) const noexcept {
-    if (report.size() < end_byte_) return std::nullopt;
-    if (access_ != Access::kWord || report.size() < kWordBytes) return read_slowly(report);
+    std::int64_t value = 0;
+    if (!read(report, value)) return std::nullopt;
+    return value;
+  }
+
+  /// The same into `value`; false, and `value` as it was, where read() gives none. An optional is
+  /// written in two parts and read in one, for which processors wait; decoders ask for ten fields.
+  bool read(std::span<const std::uint8_t> report, std::int64_t& value) const noexcept {
+    if (report.size() < end_byte_) return false;
+    if (access_ != Access::kWord || report.size() < kWordBytes) return read_slowly(report, value);
     // One load without branches: the eight bytes from the element's first on, or the report's last
     // eight, which then hold all of the element.
     const std::size_t start = std::min<std::size_t>(first_byte_, report.size() - kWordBytes);
     const std::uint64_t word = load_word(report.data() + start) >> (bit_offset() - 8 * start);
-    const std::int64_t value = with_sign(word & (~std::uint64_t{0} >> (64 - bit_size_)));
-    if (null_state_ && !logical_.contains(value)) return std::nullopt;
-    return value;
+    const std::int64_t sent = with_sign(word & (~std::uint64_t{0} >> (64 - bit_size_)));
+    if (null_state_ && !logical_.contains(sent)) return false;
+    value = sent;
+    return true;
   }
 
   /// The bits as sent, for serial numbers and identifiers of up to 64 bits: no sign, and no Null
@@ -61,7 +70,8 @@ class FieldReader {
 
   /// For switches: whether the value is there and not zero.
   bool is_set(std::span<const std::uint8_t> report) const noexcept {
-    return read(report).value_or(0) != 0;
+    std::int64_t value = 0;
+    return read(report, value) && value != 0;
   }
 
   /// The declared logical range; 0..0 for an absent reader. minimum > maximum means: none.
@@ -89,7 +99,7 @@ class FieldReader {
     return static_cast<std::int64_t>((bits ^ sign_) - sign_);
   }
 
-  std::optional<std::int64_t> read_slowly(std::span<const std::uint8_t> report) const noexcept;
+  bool read_slowly(std::span<const std::uint8_t> report, std::int64_t& value) const noexcept;
   std::optional<std::int64_t> read_selection(std::span<const std::uint8_t> report) const noexcept;
 
   Range logical_;
