@@ -1,12 +1,12 @@
 #include "drivers/devices/trace_decoder.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <numeric>
 #include <string_view>
-#include <system_error>
 #include <utility>
+
+#include "input/trace/noted_loss.hpp"
 
 namespace limn {
 namespace {
@@ -205,13 +205,7 @@ TraceDecoder::Step TraceDecoder::take(const TraceNote& note) {
     leave(**found);
     return {};
   }
-  for (const std::string_view kind : {"lost ", "lost? "}) {  // counted; at least so many
-    if (!note.text.starts_with(kind)) continue;
-    std::uint32_t count = 0;
-    const char* const end = note.text.data() + note.text.size();
-    const auto parsed = std::from_chars(note.text.data() + kind.size(), end, count);
-    if (parsed.ec == std::errc{} && parsed.ptr == end) return lose({note.device, count});
-  }
+  if (const auto loss = noted_loss(note.text)) return lose({note.device, loss->count});
   return {};
 }
 

@@ -119,11 +119,7 @@ ReportClass VendorPenDecoder::uclogic_v1(Bytes report, Timestamp time, PenOutput
   if ((flags & 0x60U) == 0x60U) return ReportClass::kPad;
   bit6_in_range_ = bit6_in_range_ || (has(flags, 0x40) && has(flags, 0x07));
   if (has(flags, 0x40) != bit6_in_range_) return out_of_range(time, out);
-  PenSample sample =
-      start(time, Tool::kPen, has(flags, 0x01), buttons(has(flags, 0x02), has(flags, 0x04)));
-  set_position(sample, le16(report, 2), le16(report, 4));
-  set_pressure(sample, le16(report, 6));
-  return in_range(sample, out);
+  return plain_pen(report, time, out);
 }
 
 // Report 8: le16 x 2, y 4, pressure 6, their third bytes at 8 and 9, tilt s8 10 (right) and 11
@@ -201,11 +197,7 @@ ReportClass VendorPenDecoder::kye(Bytes report, Timestamp time, PenOutput& out) 
     set_position(mouse, le16(report, 2), le16(report, 4));
     return in_range(mouse, out);
   }
-  PenSample sample =
-      start(time, Tool::kPen, has(flags, 0x01), buttons(has(flags, 0x02), has(flags, 0x04)));
-  set_position(sample, le16(report, 2), le16(report, 4));
-  set_pressure(sample, le16(report, 6));
-  return in_range(sample, out);
+  return plain_pen(report, time, out);
 }
 
 // Report 9: le16 x 2, y 4. d1: bit 7 in range, 81 tip, 83 and 85 barrel switches (the tip's bit
@@ -226,6 +218,12 @@ ReportClass VendorPenDecoder::kye_mouse(Bytes report, Timestamp time, PenOutput&
 ReportClass VendorPenDecoder::pen_as_mouse(Bytes report, Timestamp time, PenOutput& out) noexcept {
   const std::uint8_t flags = report[1];
   if ((flags & 0xC0U) == 0x80U) return out_of_range(time, out);
+  return plain_pen(report, time, out);
+}
+
+// What the simplest forms share: d1 bits 0 tip, 1 and 2 barrel switches, le16 x 2, y 4, pressure 6.
+ReportClass VendorPenDecoder::plain_pen(Bytes report, Timestamp time, PenOutput& out) noexcept {
+  const std::uint8_t flags = report[1];
   PenSample sample =
       start(time, Tool::kPen, has(flags, 0x01), buttons(has(flags, 0x02), has(flags, 0x04)));
   set_position(sample, le16(report, 2), le16(report, 4));

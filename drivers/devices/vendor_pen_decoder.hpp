@@ -67,6 +67,7 @@ class VendorPenDecoder {
   ReportClass kye_mouse(Bytes report, Timestamp time, PenOutput& out) noexcept;
   ReportClass pen_as_mouse(Bytes report, Timestamp time, PenOutput& out) noexcept;
 
+  ReportClass plain_pen(Bytes report, Timestamp time, PenOutput& out) noexcept;
   PenSample start(Timestamp time, Tool tool, bool tip, PenButtons pressed) const noexcept;
   void set_position(PenSample& sample, std::int32_t x, std::int32_t y) const noexcept;
   void set_pressure(PenSample& sample, std::int32_t counts) const noexcept;

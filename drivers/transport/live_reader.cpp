@@ -5,10 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <mutex>
 #include <system_error>
@@ -145,6 +143,9 @@ class LiveReader::Reading {
         for (auto& device : hotplug_->arrived()) add(std::move(device));
       }
       signal_descriptor(ready_.get());
+    }
+    for (DeviceIndex i = 0; i < slots_.size(); ++i) {
+      if (slots_[i].dropped > 0) push_control(take_loss(i));
     }
     push_control({RecordKind::kEnd, 0, 0});
     signal_descriptor(ready_.get());

@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <cstring>
 
 #include "drivers/devices/pen_decoder.hpp"
 #include "modeler/app/command.hpp"

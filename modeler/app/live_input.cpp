@@ -2,8 +2,10 @@
 
 #include <signal.h>  // sigaction is POSIX
 
+#include <algorithm>
 #include <atomic>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -107,14 +109,16 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const std::st
     return id ? one.device.vendor == id->vendor && one.device.product == id->product
               : !pen_kind(one).empty();
   };
-  std::vector<std::string> nodes;
-  for (const ListedDevice& one : *listed) {
-    if (wanted(one)) nodes.push_back(one.node);
-  }
+  std::vector<ListedDevice> chosen;
+  std::copy_if(listed->begin(), listed->end(), std::back_inserter(chosen), wanted);
+  std::optional<int> interface_number;  // of the one that N names, for when it comes back
   if (id && id->ordinal) {
-    const std::size_t found = nodes.size();
-    nodes = *id->ordinal < found ? std::vector{nodes[*id->ordinal]} : std::vector<std::string>();
+    const std::size_t found = chosen.size();
+    chosen = *id->ordinal < found ? std::vector{chosen[*id->ordinal]} : std::vector<ListedDevice>();
+    if (!chosen.empty()) interface_number = chosen.front().interface_number;
   }
+  std::vector<std::string> nodes;
+  for (const ListedDevice& one : chosen) nodes.push_back(one.node);
   if (nodes.empty()) {
     return no_device(ErrorCode::kMissing,
                      id ? "no device " + device + " is here" : "no pen is here",
@@ -123,7 +127,9 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const std::st
   auto opened = open_all(nodes);
   if (!opened) return tl::unexpected(std::move(opened.error()));
   // Without udev what goes away stays away; everything else still works.
-  auto hotplug = watch_hid_devices(wanted);
+  auto hotplug = watch_hid_devices([wanted, interface_number](const ListedDevice& one) {
+    return wanted(one) && (!interface_number || one.interface_number == *interface_number);
+  });
   return in_file("",
                  LiveReader::start(*std::move(opened), hotplug ? *std::move(hotplug) : nullptr));
 }

@@ -10,10 +10,10 @@
 
 #include "drivers/devices/trace_decoder.hpp"
 #include "drivers/transport/paced_reader.hpp"
+#include "input/trace/noted_loss.hpp"
 #include "modeler/app/command.hpp"
 #include "modeler/app/live_input.hpp"
 #include "modeler/app/report_timing.hpp"
-#include "modeler/app/sample_text.hpp"
 #include "modeler/app/standard_output.hpp"
 #include "modeler/app/table.hpp"
 
@@ -79,9 +79,10 @@ class WatchingReader final : public TraceReader {
   void count(const TraceNote& note) {
     Watched& device = devices[note.device];
     device.gone |= note.text == "gone";
-    if (!note.text.starts_with("lost")) return;
-    device.lost_estimated |= note.text[4] == '?';
-    device.lost += std::stoull(std::string(note.text.substr(note.text.find(' ') + 1)));
+    if (const auto loss = noted_loss(note.text)) {
+      device.lost += loss->count;
+      device.lost_estimated |= loss->estimated;
+    }
   }
   template <class Other>
   void count(const Other&) {}

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <map>
 #include <optional>
 
 #include "drivers/transport/paced_reader.hpp"
 #include "input/trace/hid_recorder_writer.hpp"
+#include "input/trace/noted_loss.hpp"
 #include "modeler/app/command.hpp"
 #include "modeler/app/live_input.hpp"
 #include "modeler/app/recording_file.hpp"
@@ -48,9 +48,9 @@ class Recorder {
         {report.device, std::max(Timestamp(0), report.time - *start_), report.bytes});
   }
   Expected<void> operator()(const TraceNote& note) {
-    if (const auto blank = note.text.find(' '); note.text.starts_with("lost")) {
-      counts_.lost += std::stoull(std::string(note.text.substr(blank + 1)));
-      counts_.lost_estimated |= note.text[4] == '?';
+    if (const auto loss = noted_loss(note.text)) {
+      counts_.lost += loss->count;
+      counts_.lost_estimated |= loss->estimated;
     }
     return writer_.note(note.text, note.device);
   }
@@ -92,9 +92,9 @@ Outcome run_record(const RecordArguments& arguments) {
 
   WaitingClock& clock = monotonic_clock();
   const Timestamp start = clock.now();
-  const Timestamp end = arguments.seconds > 0
-                            ? start + Timestamp(static_cast<std::int64_t>(arguments.seconds * 1e9))
-                            : Timestamp::max();
+  Timestamp end = arguments.seconds > 0
+                      ? start + Timestamp(static_cast<std::int64_t>(arguments.seconds * 1e9))
+                      : Timestamp::max();
   Timestamp sync_due = Timestamp::max();
   Timestamp progress_due = shows_progress ? start + kProgressPeriod : Timestamp::max();
   Expected<void> written;
@@ -114,7 +114,10 @@ Outcome run_record(const RecordArguments& arguments) {
       std::fprintf(stderr, "\r\033[K%s", summarise(recorder.counts(), now - start).c_str());
       progress_due = now + kProgressPeriod;
     }
-    if (now >= end && !event) ended = true;
+    if (now >= end) {  // what has come by now still comes out, and then the end
+      (*reader)->stop();
+      end = Timestamp::max();
+    }
   }
   if (shows_progress) std::fputs("\r\033[K", stderr);
   if (written) written = file->sync();

@@ -178,6 +178,25 @@ TEST(LiveReader, CountsWhatAFloodDrops) {
   EXPECT_EQ(given + lost, kSent + 1);
 }
 
+TEST(LiveReader, TellsAtTheEndWhatItDropped) {
+  // Nobody takes an event before the stop, and no report comes after the loss.
+  std::unique_ptr<Transport> transport;
+  FarEnd device(pen(), transport);
+  const auto reader = start(std::move(transport));
+  const std::vector<std::uint8_t> report(1000, 7);
+  for (int sent = 0; sent < 3000;) {
+    if (device.try_send(report)) {
+      ++sent;
+    } else {
+      std::this_thread::sleep_for(1ms);
+    }
+  }
+  reader->stop();
+  std::string last;
+  for (std::string event = next(*reader); event != "end"; event = next(*reader)) last = event;
+  EXPECT_TRUE(last.starts_with("note 0 lost ")) << last;
+}
+
 TEST(LiveReader, AllocatesNothingForAReport) {
   std::unique_ptr<Transport> transport;
   FarEnd device(pen(), transport);
