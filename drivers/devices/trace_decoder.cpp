@@ -63,10 +63,7 @@ TraceDecoder::~TraceDecoder() = default;
 Expected<const PenSample*> TraceDecoder::next() {
   if (error_) return tl::unexpected(*error_);
   while (pending_.empty() && !ended_) {
-    auto event = reader_->next();
-    const Step step =
-        event ? std::visit([this](const auto& content) { return take(content); }, *event)
-              : Step(tl::unexpected(std::move(event.error())));
+    const Step step = advance();
     if (!step) {
       error_ = step.error();
       return tl::unexpected(*error_);
@@ -79,6 +76,34 @@ Expected<const PenSample*> TraceDecoder::next() {
   sample_.lost = saturated_sum(sample_.lost, std::exchange(pending_from_->lost, 0));
   ++samples_;
   return &sample_;
+}
+
+/// One event of the stream: the reader's next, or a pen's silent leaving that is due before it.
+TraceDecoder::Step TraceDecoder::advance() {
+  Device* const leaving = next_to_leave();
+  auto event = reader_->next_until(leaving ? *leaving->reports->due() : Timestamp::max());
+  if (!event) return tl::unexpected(std::move(event.error()));
+  if (*event) return std::visit([this](const auto& content) { return take(content); }, **event);
+  if (leaving != nullptr) leave_silently(*leaving);
+  return {};
+}
+
+/// The device whose pen leaves first if nothing more comes, if any.
+TraceDecoder::Device* TraceDecoder::next_to_leave() const noexcept {
+  Device* first = nullptr;
+  Timestamp earliest = Timestamp::max();
+  for (const auto& device : devices_) {
+    const auto due = device->reports ? device->reports->due() : std::optional<Timestamp>();
+    if (!due || (first != nullptr && earliest <= *due)) continue;
+    first = device.get();
+    earliest = *due;
+  }
+  return first;
+}
+
+void TraceDecoder::leave_silently(Device& device) noexcept {
+  const Timestamp due = *device.reports->due();
+  give(device, device.reports->advance(device.summary.index, due), due);
 }
 
 TraceSummary TraceDecoder::summary() const {
@@ -97,19 +122,11 @@ TraceSummary TraceDecoder::summary() const {
 // Once the trace is over, pens that leave silently leave as if more time went by, in its order.
 // Each step hands out one device's samples; the reader's end comes again for the next.
 TraceDecoder::Step TraceDecoder::take(TraceEnd) {
-  Device* first = nullptr;
-  std::optional<Timestamp> earliest;
-  for (const auto& device : devices_) {
-    const auto due = device->reports ? device->reports->due() : std::optional<Timestamp>();
-    if (!due || (earliest && *earliest <= *due)) continue;
-    first = device.get();
-    earliest = due;
-  }
-  if (first == nullptr) {
+  if (Device* const leaving = next_to_leave()) {
+    leave_silently(*leaving);
+  } else {
     ended_ = true;
-    return {};
   }
-  give(*first, first->reports->advance(first->summary.index, *earliest), *earliest);
   return {};
 }
 

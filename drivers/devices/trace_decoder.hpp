@@ -58,8 +58,12 @@ struct TraceDecoderOptions {
 /// Trace -> PenSamples of all its devices, in file order, pulled one by one. Sample times are the
 /// file's minus that of its first report, frame or sample. What the trace tells of missing reports
 /// (TraceDamage, "lost N" notes) is added to `lost` of their device's next sample; a "gone" note
-/// takes what is in range out of it. A pen that leaves silently (PenDecoder) leaves before its
-/// device's next report, or at the end. Constant memory.
+/// takes what is in range out of it. Constant memory.
+///
+/// A pen that leaves silently (PenDecoder) leaves before its device's next report, or at the end,
+/// or as soon as a reader that waits says that it was silent for so long (next_until): what each
+/// device gives is the same whether it is live, replayed at any speed or decoded at once. Between
+/// devices the order is that of the reader's events, and a silent leaving comes out when it shows.
 ///
 ///     TraceDecoder decoder(std::move(reader));
 ///     for (;;) {
@@ -104,6 +108,10 @@ class TraceDecoder {
   std::uint64_t damaged_parts_ = 0;
   std::vector<Error> damage_;
   bool ended_ = false;
+
+  Step advance();
+  Device* next_to_leave() const noexcept;
+  void leave_silently(Device& device) noexcept;
 
   Step take(TraceEnd);
   Step take(const DeviceDescribed& described);

@@ -94,6 +94,8 @@ class LiveReader::Reading {
 
   RecordRing& ring() noexcept { return ring_; }
   int ready_descriptor() const noexcept { return ready_.get(); }
+  /// Whether the thread is stamping and pushing; it signals when it has done so.
+  bool in_round() const noexcept { return in_round_.load(); }
   std::shared_ptr<const TraceDevice> described(DeviceIndex index) {
     const std::lock_guard lock(devices_mutex_);
     return index < slots_.size() ? slots_[index].device : nullptr;
@@ -135,6 +137,7 @@ class LiveReader::Reading {
       }
       if (owners.empty() && !hotplug_) break;
       if (::poll(polled.data(), polled.size(), -1) < 0 && errno != EINTR) break;
+      in_round_.store(true);
       if (polled[0].revents != 0) clear_descriptor(wake_.get());
       for (std::size_t k = 0; k < owners.size(); ++k) {
         if (polled[first + k].revents != 0) drain(owners[k]);
@@ -142,6 +145,7 @@ class LiveReader::Reading {
       if (hotplug_ && polled[1].revents != 0) {
         for (auto& device : hotplug_->arrived()) add(std::move(device));
       }
+      in_round_.store(false);
       signal_descriptor(ready_.get());
     }
     for (DeviceIndex i = 0; i < slots_.size(); ++i) {
@@ -236,6 +240,7 @@ class LiveReader::Reading {
   std::unique_ptr<Hotplug> hotplug_;
   std::atomic<bool> stopping_ = false;
   std::atomic<bool> closed_ = false;
+  std::atomic<bool> in_round_ = false;
   std::thread thread_;
 };
 
@@ -259,18 +264,20 @@ std::string LiveReader::place() const { return "device " + std::to_string(last_d
 
 Expected<TraceEvent> LiveReader::next() {
   for (;;) {
-    if (auto event = next_until(Timestamp::max())) return *std::move(event);
+    if (auto event = *next_until(Timestamp::max())) return *std::move(event);
   }
 }
 
-std::optional<TraceEvent> LiveReader::next_until(Timestamp deadline) {
+Expected<std::optional<TraceEvent>> LiveReader::next_until(Timestamp deadline) {
   for (;;) {
     if (auto event = take()) return event;
     pollfd ready{reading_->ready_descriptor(), POLLIN, 0};
-    int timeout_ms = -1;
-    if (deadline != Timestamp::max()) {
-      const auto left = deadline - monotonic_clock().now();
-      if (left <= Timestamp::zero()) return std::nullopt;
+    int timeout_ms = -1;  // a round ends with a signal
+    const auto left = deadline == Timestamp::max() ? deadline : deadline - monotonic_clock().now();
+    if (left <= Timestamp::zero()) {
+      // Between two rounds everything stamped before the deadline is in the ring.
+      if (!reading_->in_round()) return take();
+    } else if (left != Timestamp::max()) {
       constexpr std::int64_t kMostMs = 60'000;
       timeout_ms = static_cast<int>(
           std::min(kMostMs, std::chrono::ceil<std::chrono::milliseconds>(left).count()));

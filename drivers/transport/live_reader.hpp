@@ -18,9 +18,9 @@ namespace limn {
 /// counted, and told by a note "lost N" before the next one. Notes, as hid-recorder files keep
 /// them:
 ///
-///     lost N     N reports of the device are missing here (the ring was full, or the device said
-///     so) lost? N    some are missing, at least N: nobody counts them gone       the device went
-///     away; it is described again, under its index, when it comes back
+///   - "lost N": N reports of the device are missing here: the ring was full, or the device says so
+///   - "lost? N": some are missing, at least N: nobody counts them
+///   - "gone": the device went away; it is described again, under its index, when it comes back
 ///
 /// A device that comes back is known by its ids, its name and its place (physical path).
 class LiveReader final : public TraceReader {
@@ -40,8 +40,9 @@ class LiveReader final : public TraceReader {
   /// Waits for the next event. TraceEnd after stop() or the last device's end.
   Expected<TraceEvent> next() override;
 
-  /// Waits no longer than until `deadline` (CLOCK_MONOTONIC); nothing where no event came.
-  std::optional<TraceEvent> next_until(Timestamp deadline);
+  /// Waits no longer than until `deadline` (CLOCK_MONOTONIC, as the times of what is stamped when
+  /// it is read) and for what is being read just then. Never an error.
+  Expected<std::optional<TraceEvent>> next_until(Timestamp deadline) override;
 
   std::string place() const override;
 

@@ -53,10 +53,38 @@ PacedReader::PacedReader(std::unique_ptr<TraceReader> reader, double speed, Wait
     : reader_(std::move(reader)), speed_(speed), clock_(clock) {}
 
 Expected<TraceEvent> PacedReader::next() {
-  auto event = reader_->next();
-  if (!event) return event;
-  if (const auto time = std::visit(TimeOf{}, *event)) wait_for(*time);
-  return event;
+  auto event = next_until(Timestamp::max());
+  if (!event) return tl::unexpected(std::move(event.error()));
+  return **std::move(event);
+}
+
+Expected<std::optional<TraceEvent>> PacedReader::next_until(Timestamp deadline) {
+  if (!ahead_) {
+    auto event = reader_->next();
+    if (!event) return tl::unexpected(std::move(event.error()));
+    ahead_ = *std::move(event);
+  }
+  const auto time = std::visit(TimeOf{}, *ahead_);
+  if (time) {
+    shares_clock_ = shares_clock_ && latest_ <= *time;
+    latest_ = std::max(latest_, *time);
+  }
+  const bool silent = std::holds_alternative<TraceEnd>(*ahead_)
+                          ? deadline != Timestamp::max()
+                          : time && *time > deadline && shares_clock_;
+  if (silent && started_) {
+    clock_.wait_until(due(deadline));
+    return std::nullopt;
+  }
+  if (time) wait_for(*time);
+  return std::exchange(ahead_, std::nullopt);
+}
+
+Timestamp PacedReader::due(Timestamp recorded) const noexcept {
+  // A century: times that a damaged file makes up must not overflow.
+  constexpr double kLongest = 3.2e18;
+  const double passed = static_cast<double>((recorded - first_).count()) / speed_;
+  return *started_ + Timestamp(static_cast<std::int64_t>(std::clamp(passed, 0.0, kLongest)));
 }
 
 void PacedReader::wait_for(Timestamp recorded) noexcept {
@@ -64,13 +92,9 @@ void PacedReader::wait_for(Timestamp recorded) noexcept {
     started_ = clock_.now();
     first_ = recorded;
   }
-  // A century: times that a damaged file makes up must not overflow.
-  constexpr double kLongest = 3.2e18;
-  const double passed = static_cast<double>((recorded - first_).count()) / speed_;
-  const Timestamp due =
-      *started_ + Timestamp(static_cast<std::int64_t>(std::clamp(passed, 0.0, kLongest)));
-  clock_.wait_until(due);
-  lateness_ = std::max(Timestamp::zero(), clock_.now() - due);
+  const Timestamp time = due(recorded);
+  clock_.wait_until(time);
+  lateness_ = std::max(Timestamp::zero(), clock_.now() - time);
 }
 
 }  // namespace limn

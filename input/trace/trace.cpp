@@ -50,6 +50,8 @@ std::string_view name(TraceFormat format) noexcept {
   return kNames[static_cast<std::size_t>(format)];
 }
 
+Expected<std::optional<TraceEvent>> TraceReader::next_until(Timestamp) { return next(); }
+
 Expected<std::unique_ptr<TraceReader>> open_trace(std::unique_ptr<ByteSource> bytes,
                                                   TraceOptions options) {
   auto peeked = std::make_unique<PeekedBytes>(std::move(bytes));

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -132,6 +133,11 @@ class TraceReader {
   /// The next event; TraceEnd for ever after the last one. After an error the reader is spent and
   /// gives the same error again. Everything returned before an error stands.
   virtual Expected<TraceEvent> next() = 0;
+
+  /// The same, but where the stream is silent until `deadline`, in the time of its events, nothing:
+  /// no event from before `deadline` comes any more. Only readers that wait for their events have
+  /// silence; a recording is there as a whole and gives its next event, whenever that was.
+  virtual Expected<std::optional<TraceEvent>> next_until(Timestamp deadline);
 
   /// Where the last event stood, e.g. "line 12", for error messages about its content.
   virtual std::string place() const = 0;

@@ -45,7 +45,14 @@ class WatchingReader final : public TraceReader {
   std::string place() const override { return live_.place(); }
 
   Expected<TraceEvent> next() override {
+    auto event = next_until(Timestamp::max());
+    if (!event) return tl::unexpected(std::move(event.error()));
+    return **std::move(event);
+  }
+
+  Expected<std::optional<TraceEvent>> next_until(Timestamp deadline) override {
     WaitingClock& clock = monotonic_clock();
+    last_report.reset();
     for (;;) {
       const Timestamp now = clock.now();
       if (now >= due_) {
@@ -53,15 +60,16 @@ class WatchingReader final : public TraceReader {
         due_ = now + period_;
       }
       if (now >= end_) return TraceEnd{};
-      const auto event = live_.next_until(std::min(due_, end_));
-      if (!event) continue;
-      std::visit([this](const auto& content) { count(content); }, *event);
-      return *event;
+      const Timestamp until = std::min({due_, end_, deadline});
+      auto event = live_.next_until(until);
+      if (event && !*event && until != deadline) continue;
+      if (event && *event) std::visit([this](const auto& content) { count(content); }, **event);
+      return event;
     }
   }
 
   std::map<DeviceIndex, Watched> devices;
-  Timestamp last_report{};
+  std::optional<Timestamp> last_report;  ///< of the last event, where it was a report
 
  private:
   void count(const DeviceDescribed& described) {
@@ -196,7 +204,7 @@ Outcome run_monitor(const MonitorArguments& arguments) {
     if (*sample == nullptr) break;
     Watched& device = watched.devices[(*sample)->device];
     device.last = **sample;
-    device.latency.add(monotonic_clock().now() - watched.last_report);
+    if (watched.last_report) device.latency.add(monotonic_clock().now() - *watched.last_report);
   }
   show(watched.devices);
   return written;

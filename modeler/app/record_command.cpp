@@ -99,7 +99,7 @@ Outcome run_record(const RecordArguments& arguments) {
   Timestamp progress_due = shows_progress ? start + kProgressPeriod : Timestamp::max();
   Expected<void> written;
   for (bool ended = false; !ended && written;) {
-    const auto event = (*reader)->next_until(std::min({sync_due, progress_due, end}));
+    const auto event = *(*reader)->next_until(std::min({sync_due, progress_due, end}));
     const Timestamp now = clock.now();
     if (event) {
       written = std::visit(recorder, *event);

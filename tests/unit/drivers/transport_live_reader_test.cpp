@@ -9,6 +9,7 @@
 #include <mutex>
 #include <thread>
 
+#include "drivers/devices/trace_decoder.hpp"
 #include "drivers/transport/hidraw_transport.hpp"
 #include "drivers/transport/live_reader.hpp"
 #include "drivers/transport/paced_reader.hpp"
@@ -143,8 +144,54 @@ TEST(LiveReader, WaitsNoLongerThanAsked) {
   const auto reader = start(std::move(transport));
   EXPECT_EQ(next(*reader), "described 0 A Pen");
   const Timestamp deadline = monotonic_clock().now() + 5ms;
-  EXPECT_FALSE(reader->next_until(deadline).has_value());
+  EXPECT_FALSE(reader->next_until(deadline)->has_value());
   EXPECT_GE(monotonic_clock().now(), deadline);
+}
+
+TEST(LiveReader, SilenceTakesASilentPenOutOfRange) {
+  // A New 1060 Plus, which never says that its pen leaves, and nothing more comes.
+  TraceDevice tablet;
+  tablet.vendor = 0x256C;
+  tablet.product = 0x006E;
+  std::unique_ptr<Transport> transport;
+  FarEnd device(tablet, transport);
+  TraceDecoder decoder(start(std::move(transport)));
+  device.send({8, 0x80, 0x10, 0x27, 0x10, 0x27, 0, 0, 0, 0, 0, 0});
+  device.send({8, 0x81, 0x10, 0x27, 0x10, 0x27, 9, 0, 0, 0, 0, 0});
+  std::vector<PenSample> samples;
+  for (int i = 0; i < 4; ++i) samples.push_back(**decoder.next());
+  EXPECT_EQ(samples[0].state, PenState::kInRange);
+  EXPECT_EQ(samples[1].state, PenState::kInContact);
+  EXPECT_EQ(samples[2].state, PenState::kInRange);
+  EXPECT_EQ(samples[3].state, PenState::kOutOfRange);
+  EXPECT_EQ(samples[2].time, samples[1].time + kLeavingTimeout);
+  EXPECT_EQ(samples[3].time, samples[1].time + kLeavingTimeout) << "not when it was noticed";
+  device.send({8, 0x80, 0x10, 0x27, 0x10, 0x27, 0, 0, 0, 0, 0, 0});
+  const PenSample back = **decoder.next();
+  EXPECT_EQ(back.state, PenState::kInRange);
+  EXPECT_GE(back.time, samples[3].time);
+}
+
+TEST(LiveReader, AnotherDevicesReportsAreNoSilenceAndHideNone) {
+  TraceDevice tablet;
+  tablet.vendor = 0x256C;
+  tablet.product = 0x006E;
+  TraceDevice graphire;
+  graphire.vendor = 0x056A;
+  graphire.product = 0x0013;
+  std::vector<std::unique_ptr<Transport>> devices(2);
+  FarEnd silent(tablet, devices[0]);
+  FarEnd busy(graphire, devices[1]);
+  TraceDecoder decoder(*LiveReader::start(std::move(devices)));
+  silent.send({8, 0x80, 0x10, 0x27, 0x10, 0x27, 0, 0, 0, 0, 0, 0});
+  std::vector<PenSample> of_silent;
+  while (of_silent.size() < 2) {
+    busy.send({2, 0x90, 0x40, 0x1f, 0x20, 0x03, 0, 0});
+    const PenSample sample = **decoder.next();
+    if (sample.device == 0) of_silent.push_back(sample);
+  }
+  EXPECT_EQ(of_silent[1].state, PenState::kOutOfRange);
+  EXPECT_EQ(of_silent[1].time, of_silent[0].time + kLeavingTimeout);
 }
 
 TEST(LiveReader, CountsWhatAFloodDrops) {
