@@ -153,7 +153,11 @@ std::span<const PenSample> EvdevPenDecoder::decode(const EvdevFrame& frame) noex
   const bool nothing_new = sample.state == PenState::kOutOfRange && !position_moved_ &&
                            output_->machine().last().state == PenState::kOutOfRange;
   if (nothing_new) return {};
-  sample.lost = std::exchange(dropped_, false) ? 1 : 0;
+  if (std::exchange(dropped_, false)) {
+    sample.lost = 1;
+    sample.lost_estimated = true;
+    sample.disturbances.add(Disturbance::kOverrun);
+  }
   output_->push(sample);
   return output_->samples();
 }

@@ -25,7 +25,7 @@ namespace limn {
 ///     MSC_SERIAL                          serial; alone it tells that the pen reported, unmoved;
 ///                                         -1 is the pad's
 ///     SYN_DROPPED                         the kernel lost events: this frame's are void, and the
-///                                         next sample's `lost` is 1 (one or more)
+///                                         next sample has an overrun, `lost` at least 1
 ///
 /// Axes come with their first event: until then the kernel's value is unknown.
 class EvdevPenDecoder {

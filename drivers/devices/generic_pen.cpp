@@ -212,6 +212,7 @@ ReportClass GenericPen::decode(Bytes report, Timestamp time, PenOutput& out) noe
   if (sample.state == PenState::kOutOfRange) sample.tool = out.machine().last().tool;
   sample.buttons = read_buttons(*layout, report);
   sample.lost = count_lost(*layout, report);
+  if (sample.lost > 0) sample.disturbances.add(Disturbance::kGap);
   set_position(*layout, report, sample);
   set_pressure(*layout, report, sample);
   set_tilt(*layout, report, sample);

@@ -44,7 +44,6 @@ class PenOutput {
     PenSample gone = machine_.last();
     if (gone.state == PenState::kOutOfRange) return;
     gone.time = time;
-    gone.lost = 0;
     if (in_contact(gone.state)) {
       gone.state = state_of(gone.tool, false);
       push(gone);

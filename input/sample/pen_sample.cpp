@@ -1,6 +1,7 @@
 #include "input/sample/pen_sample.hpp"
 
 #include <array>
+#include <bit>
 
 namespace limn {
 
@@ -13,6 +14,12 @@ std::string_view name(PenState state) noexcept {
   constexpr std::array<std::string_view, 5> kNames = {"out_of_range", "in_range", "in_contact",
                                                       "in_range_erasing", "erasing"};
   return kNames[static_cast<std::size_t>(state)];
+}
+
+std::string_view name(Disturbance disturbance) noexcept {
+  constexpr std::array<std::string_view, kDisturbanceCount> kNames = {
+      "overrun", "gap", "reset", "repaired", "clock_jump", "damage"};
+  return kNames[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(disturbance)))];
 }
 
 std::string_view button_name(Tool tool, unsigned index) noexcept {

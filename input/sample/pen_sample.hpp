@@ -59,6 +59,36 @@ class PenAxes {
 /// middle, side, extra, in the order of the Linux button codes.
 using PenButtons = std::uint8_t;
 
+/// What happened to a device's stream of reports between its sample before and this one.
+enum class Disturbance : std::uint8_t {
+  kOverrun = 1 << 0,    ///< a queue ran full: the device's, the kernel's or limn's dropped reports
+  kGap = 1 << 1,        ///< the device's own counter or clock, or its pace, shows reports missing
+  kReset = 1 << 2,      ///< the device went away or was described anew
+  kRepaired = 1 << 3,   ///< the pen made an illegal transition, of which this is the repair
+  kClockJump = 1 << 4,  ///< time went back, or the device's clock and the reports' times disagree
+  kDamage = 1 << 5,     ///< a part of the recording that cannot be read was skipped
+};
+inline constexpr unsigned kDisturbanceCount = 6;
+
+/// A set of them; disturbance i is bit i.
+class Disturbances {
+ public:
+  constexpr Disturbances() = default;
+  constexpr Disturbances(Disturbance one) noexcept : bits_(static_cast<std::uint8_t>(one)) {}
+  constexpr bool has(Disturbance one) const noexcept {
+    return (bits_ & static_cast<std::uint8_t>(one)) != 0;
+  }
+  constexpr void add(Disturbances others) noexcept {
+    bits_ = static_cast<std::uint8_t>(bits_ | others.bits_);
+  }
+  constexpr bool empty() const noexcept { return bits_ == 0; }
+  constexpr std::uint8_t bits() const noexcept { return bits_; }
+  friend constexpr bool operator==(Disturbances, Disturbances) = default;
+
+ private:
+  std::uint8_t bits_ = 0;
+};
+
 /// Device counts before any conversion, as the device sent them.
 struct RawCounts {
   std::int32_t x = 0;
@@ -85,7 +115,9 @@ struct PenSample {
   double twist_rad = 0;   ///< 0 to 2 pi about the pen's own axis, clockwise seen from above
   double distance = 0;    ///< 0 (touching) to 1 (the edge of range)
   std::uint64_t serial = 0;
-  std::uint32_t lost = 0;  ///< reports known to be missing just before this sample
+  std::uint32_t lost = 0;       ///< reports that are missing just before this sample, as counted
+  bool lost_estimated = false;  ///< nobody counted (all of) `lost`: at least so many are missing
+  Disturbances disturbances;
   RawCounts raw;
 };
 
@@ -96,6 +128,8 @@ constexpr bool in_contact(PenState state) noexcept {
 /// The names of the JSON and CSV contracts ("pen", "in_range_erasing", ..).
 std::string_view name(Tool tool) noexcept;
 std::string_view name(PenState state) noexcept;
+/// "overrun", "gap", "reset", "repaired", "clock_jump", "damage".
+std::string_view name(Disturbance disturbance) noexcept;
 /// Name of button `index` (0 to 7): "barrel1", .. for pens and erasers, "left", .. for mice.
 std::string_view button_name(Tool tool, unsigned index) noexcept;
 

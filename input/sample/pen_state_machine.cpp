@@ -26,8 +26,16 @@ constexpr PenState hovering(PenState state) noexcept {
              : PenState::kInRange;
 }
 
-PenSample hovering_copy(const PenSample& sample) noexcept {
+PenSample undisturbed_copy(const PenSample& sample) noexcept {
   PenSample copy = sample;
+  copy.lost = 0;
+  copy.lost_estimated = false;
+  copy.disturbances = {};
+  return copy;
+}
+
+PenSample hovering_copy(const PenSample& sample) noexcept {
+  PenSample copy = undisturbed_copy(sample);
   copy.state = hovering(sample.state);
   return copy;
 }
@@ -62,12 +70,13 @@ std::size_t PenStateMachine::push(const PenSample& sample,
   const auto give = [&](const PenSample& inserted) {
     out[count] = inserted;
     out[count].time = sample.time;
-    out[count].lost = 0;
     ++count;
   };
+  Disturbances disturbances = sample.disturbances;
   const bool other_tool = changes_tool(last_, sample);
   if (other_tool || !is_legal_transition(last_.state, sample.state)) {
     ++repaired_;
+    disturbances.add(Disturbance::kRepaired);
     const bool leaves =
         other_tool || out_of_range(sample.state) || hovering(last_.state) != hovering(sample.state);
     if (leaves && in_contact(last_.state)) give(hovering_copy(last_));
@@ -76,10 +85,11 @@ std::size_t PenStateMachine::push(const PenSample& sample,
     }
     if (in_contact(sample.state)) give(hovering_copy(sample));
   }
-  out[count++] = sample;
-  out[count - 1].lost = 0;
+  last_ = undisturbed_copy(sample);
+  give(last_);
   out[0].lost = sample.lost;
-  last_ = sample;
+  out[0].lost_estimated = sample.lost_estimated;
+  out[0].disturbances = disturbances;
   return count;
 }
 

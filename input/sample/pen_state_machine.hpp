@@ -24,8 +24,8 @@ bool is_legal_transition(PenState from, PenState to) noexcept;
 ///                        three tools, even where two are ends of one stylus)
 ///
 /// all at the new sample's time. Copies keep what was measured, pressure and raw counts included.
-/// `lost` of the new sample moves to the first sample given for it. One machine a device; not
-/// thread-safe.
+/// What the new sample says of losses and disturbances moves to the first sample given for it,
+/// which also tells of the repair. One machine a device; not thread-safe.
 class PenStateMachine {
  public:
   /// Most samples given for one: lift, leave, enter, contact.
@@ -35,7 +35,7 @@ class PenStateMachine {
   /// their number.
   std::size_t push(const PenSample& sample, std::span<PenSample, kMaxSamples> out) noexcept;
 
-  /// The last sample given; kOutOfRange before the first.
+  /// The last sample given, without its losses and disturbances; kOutOfRange before the first.
   const PenSample& last() const noexcept { return last_; }
 
   /// Illegal transitions that were repaired so far.

@@ -162,6 +162,8 @@ TEST_F(EvdevPen, DroppedEventsAreToldWithTheNextSample) {
   EXPECT_THAT(frame({{kAbs, kY, 999}, {0, 3, 0}, {kAbs, kX, 888}}), IsEmpty());
   const PenSample next = one({{kAbs, kX, 400}});
   EXPECT_EQ(next.lost, 1U);
+  EXPECT_TRUE(next.lost_estimated) << "nobody counts what the kernel dropped";
+  EXPECT_EQ(next.disturbances, Disturbance::kOverrun);
   EXPECT_EQ(next.raw.y, 300) << "nothing of the frame counts, before the loss or after";
   EXPECT_EQ(one({{kAbs, kX, 401}}).lost, 0U);
 }

@@ -80,13 +80,20 @@ TEST(PenStateMachine, ContactOutOfNowhereFirstComesInRangeAtTheSamePlaceAndTime)
   Machine machine;
   PenSample contact = sample_of(S::kInContact, 7, std::chrono::milliseconds(40));
   contact.lost = 3;
+  contact.lost_estimated = true;
+  contact.disturbances = Disturbance::kGap;
   const auto samples = machine.push(contact);
   ASSERT_THAT(states(samples), ElementsAre(S::kInRange, S::kInContact));
   EXPECT_EQ(samples[0].x_mm, 7);
   EXPECT_EQ(samples[0].raw, contact.raw);
   EXPECT_EQ(samples[0].time, contact.time);
   EXPECT_EQ(samples[0].lost, 3U) << "the loss lies before the first sample given";
+  EXPECT_TRUE(samples[0].lost_estimated);
+  EXPECT_TRUE(samples[0].disturbances.has(Disturbance::kGap));
+  EXPECT_TRUE(samples[0].disturbances.has(Disturbance::kRepaired));
   EXPECT_EQ(samples[1].lost, 0U);
+  EXPECT_FALSE(samples[1].lost_estimated);
+  EXPECT_TRUE(samples[1].disturbances.empty());
   EXPECT_EQ(machine.repaired(), 1U);
 }
 
@@ -102,6 +109,20 @@ TEST(PenStateMachine, LeavingFromContactLiftsFirstWhereThePenWas) {
   EXPECT_EQ(samples[0].time, gone.time);
   EXPECT_FALSE(samples[1].axes.has_position());
   EXPECT_EQ(machine.repaired(), 1U);
+}
+
+TEST(PenStateMachine, CopiesOfTheLastSampleHaveNoneOfItsLosses) {
+  Machine machine;
+  machine.push(sample_of(S::kInRange));
+  PenSample contact = sample_of(S::kInContact);
+  contact.lost = 5;
+  contact.disturbances = Disturbance::kOverrun;
+  EXPECT_EQ(machine.push(contact).front().disturbances, Disturbance::kOverrun);
+  const auto samples = machine.push(sample_of(S::kOutOfRange));
+  ASSERT_THAT(states(samples), ElementsAre(S::kInRange, S::kOutOfRange));
+  EXPECT_EQ(samples[0].lost, 0U);
+  EXPECT_EQ(samples[0].disturbances, Disturbance::kRepaired) << "of this transition";
+  EXPECT_TRUE(samples[1].disturbances.empty());
 }
 
 TEST(PenStateMachine, PenToEraserGoesThroughOutOfRangeWithoutPosition) {
