@@ -1,7 +1,6 @@
 #include "drivers/transport/device_listing.hpp"
 
 #include <hidapi/hidapi.h>
-#include <libudev.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,8 +9,6 @@
 #include <fstream>
 #include <iterator>
 #include <utility>
-
-#include "drivers/transport/hidraw_transport.hpp"
 
 namespace limn {
 namespace {
@@ -79,46 +76,6 @@ bool by_number(const ListedDevice& a, const ListedDevice& b) {
   return std::pair(a.node.size(), a.node) < std::pair(b.node.size(), b.node);
 }
 
-template <auto kRelease>
-struct Release {
-  template <class T>
-  void operator()(T* object) const noexcept {
-    kRelease(object);
-  }
-};
-using Udev = std::unique_ptr<udev, Release<udev_unref>>;
-using UdevMonitor = std::unique_ptr<udev_monitor, Release<udev_monitor_unref>>;
-using UdevDevice = std::unique_ptr<udev_device, Release<udev_device_unref>>;
-
-class UdevHotplug final : public Hotplug {
- public:
-  UdevHotplug(Udev context, UdevMonitor monitor, DeviceFilter wanted)
-      : context_(std::move(context)), monitor_(std::move(monitor)), wanted_(std::move(wanted)) {}
-
-  int poll_descriptor() const noexcept override { return udev_monitor_get_fd(monitor_.get()); }
-
-  std::vector<std::unique_ptr<Transport>> arrived() override {
-    std::vector<std::unique_ptr<Transport>> out;
-    while (const UdevDevice event{udev_monitor_receive_device(monitor_.get())}) {
-      const char* action = udev_device_get_action(event.get());
-      const char* node = udev_device_get_devnode(event.get());
-      if (action == nullptr || node == nullptr || std::string_view(action) != "add") continue;
-      auto devices = list_hid_devices();
-      if (!devices) continue;
-      for (const ListedDevice& listed : *devices) {
-        if (listed.node != node || !wanted_(listed)) continue;
-        if (auto opened = open_hidraw(listed.node)) out.push_back(*std::move(opened));
-      }
-    }
-    return out;
-  }
-
- private:
-  Udev context_;
-  UdevMonitor monitor_;
-  DeviceFilter wanted_;
-};
-
 }  // namespace
 
 Expected<std::vector<ListedDevice>> list_hid_devices() {
@@ -134,18 +91,6 @@ Expected<std::vector<ListedDevice>> list_hid_devices() {
   hid_free_enumeration(first);
   std::sort(out.begin(), out.end(), by_number);
   return out;
-}
-
-Expected<std::unique_ptr<Hotplug>> watch_hid_devices(DeviceFilter wanted) {
-  Udev context(udev_new());
-  UdevMonitor monitor(context ? udev_monitor_new_from_netlink(context.get(), "udev") : nullptr);
-  if (!monitor ||
-      udev_monitor_filter_add_match_subsystem_devtype(monitor.get(), "hidraw", nullptr) < 0 ||
-      udev_monitor_enable_receiving(monitor.get()) < 0) {
-    return fail(ErrorCode::kIo, "", "udev cannot be asked for new devices",
-                "plug devices in beforehand");
-  }
-  return std::make_unique<UdevHotplug>(std::move(context), std::move(monitor), std::move(wanted));
 }
 
 }  // namespace limn

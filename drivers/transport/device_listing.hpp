@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "drivers/transport/transport.hpp"
 #include "input/base/error.hpp"
 #include "input/trace/trace.hpp"
 
@@ -26,8 +25,5 @@ Expected<std::vector<ListedDevice>> list_hid_devices();
 
 /// Which of the listed devices somebody wants.
 using DeviceFilter = std::function<bool(const ListedDevice&)>;
-
-/// Tells of wanted HID devices that are plugged in later, opened. Error: kIo, kMissing as above.
-Expected<std::unique_ptr<Hotplug>> watch_hid_devices(DeviceFilter wanted);
 
 }  // namespace limn

@@ -1,6 +1,7 @@
 // For builds without hidapi or libudev: recordings work, devices do not.
 
 #include "drivers/transport/device_listing.hpp"
+#include "drivers/transport/udev_hotplug.hpp"
 
 namespace limn {
 namespace {
@@ -14,6 +15,6 @@ tl::unexpected<Error> absent() {
 
 Expected<std::vector<ListedDevice>> list_hid_devices() { return absent(); }
 
-Expected<std::unique_ptr<Hotplug>> watch_hid_devices(DeviceFilter) { return absent(); }
+Expected<std::unique_ptr<Hotplug>> watch_devices(DeviceWatch) { return absent(); }
 
 }  // namespace limn

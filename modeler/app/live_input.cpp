@@ -12,6 +12,7 @@
 #include "drivers/devices/pen_decoder.hpp"
 #include "drivers/devices/pen_spec.hpp"
 #include "drivers/transport/hidraw_transport.hpp"
+#include "drivers/transport/udev_hotplug.hpp"
 #include "modeler/app/option_values.hpp"
 
 namespace limn::app {
@@ -127,9 +128,15 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const std::st
   auto opened = open_all(nodes);
   if (!opened) return tl::unexpected(std::move(opened.error()));
   // Without udev what goes away stays away; everything else still works.
-  auto hotplug = watch_hid_devices([wanted, interface_number](const ListedDevice& one) {
+  DeviceWatch watch;
+  watch.wanted = [wanted, interface_number](const ListedDevice& one) {
     return wanted(one) && (!interface_number || one.interface_number == *interface_number);
-  });
+  };
+  watch.open = [](const ListedDevice& one) {
+    auto opened = open_hidraw(one.node);
+    return opened ? *std::move(opened) : std::unique_ptr<Transport>();
+  };
+  auto hotplug = watch_devices(std::move(watch));
   return in_file("",
                  LiveReader::start(*std::move(opened), hotplug ? *std::move(hotplug) : nullptr));
 }
