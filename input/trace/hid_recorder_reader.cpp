@@ -69,6 +69,8 @@ Expected<void> HidRecorderReader::take_comment(const Line& line) {
   if (!rest.empty() && !text::is_blank(rest[0])) return {};
   if (!line.terminated) return cut_short();
   if (!rest.empty()) rest.remove_prefix(1);
+  if (device_ != nullptr && !device_->announced)
+    announce();  // what a note is about stands above it
   emit(TraceNote{rest, selected_index()});
   return {};
 }

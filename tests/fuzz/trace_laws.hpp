@@ -11,6 +11,7 @@
 
 #include "input/trace/hid_recorder_reader.hpp"
 #include "input/trace/hid_recorder_writer.hpp"
+#include "input/trace/noted_string.hpp"
 #include "input/trace/trace.hpp"
 #include "tests/fuzz/require.hpp"
 
@@ -70,6 +71,11 @@ class Laws {
   }
   void operator()(const TraceNote& note) {
     require(note.text.find('\n') == std::string_view::npos, "a note is one line");
+    if (const auto string = noted_string(note.text)) {
+      const auto again = noted_string(note_of(*string));
+      require(again && again->index == string->index && again->bytes == string->bytes,
+              "a string's note reads as it was written");
+    }
   }
   void operator()(const TraceDamage& damage) {
     require(salvage_, "only salvage skips damage");

@@ -80,6 +80,12 @@ TEST(HidRecorderReader, GivesNotes) {
   EXPECT_THAT(reading.notes, ElementsAre("lost 3", "  unplugged, spaces kept", ""));
 }
 
+TEST(HidRecorderReader, GivesANoteBehindTheDescriptionAboveIt) {
+  EXPECT_EQ(read_trace("N: a\n#limn string 201\nE: 0.0 1 01\n").order, "dnr.");
+  EXPECT_EQ(read_trace("N: a\nE: 0.0 1 01\nN: b\n#limn string 201\nE: 0.1 1 01\n").order,
+            "drdnr.");
+}
+
 TEST(HidRecorderReader, DescribesADeviceAgainWhenTheTraceDoes) {
   const Reading reading =
       read_trace("R: 1 c0\nI: 3 1 2\nE: 0.0 1 01\nE: 0.1 1 02\nR: 2 a1 01\nE: 0.2 1 03\n");
