@@ -6,7 +6,9 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/devices/pen_initialization.hpp"
 #include "input/trace/noted_loss.hpp"
+#include "input/trace/noted_string.hpp"
 
 namespace limn {
 namespace {
@@ -24,11 +26,28 @@ void describe(const PenDecoder& decoder, TraceDeviceSummary& summary) {
   summary.range = decoder.range();
 }
 
+/// Goes again through the initialisation that gave these strings; nothing where none is noted.
+std::optional<PenInitializer> initialized(const TraceDevice& device,
+                                          std::span<const NotedString> strings) {
+  const PenInitialization* sequence =
+      strings.empty() ? nullptr : find_pen_initialization(device.vendor, device.product);
+  if (sequence == nullptr) return std::nullopt;
+  PenInitializer initializer(*sequence);
+  while (const PenInitStep* step = initializer.next()) {
+    const auto found = std::find_if(strings.begin(), strings.end(), [step](const auto& string) {
+      return step->action == PenInitAction::kReadString && string.index == step->string_index;
+    });
+    initializer.done(found == strings.end() ? std::span<const std::uint8_t>() : found->bytes);
+  }
+  return initializer;
+}
+
 }  // namespace
 
 struct TraceDecoder::Device {
   TraceDevice described;
   TraceDeviceSummary summary;
+  std::vector<NotedString> strings;  // noted since the description, at most kMostStrings
   std::optional<PenDecoder> reports;
   std::optional<EvdevPenDecoder> frames;
   bool stale = true;                  // a decoder is to be made (again) before the next report
@@ -36,6 +55,8 @@ struct TraceDecoder::Device {
   std::uint64_t repaired_before = 0;  // by decoders that a new description replaced
   Timestamp last_time{};
   std::uint32_t lost = 0;  // to be told with the next sample
+
+  static constexpr std::size_t kMostStrings = 8;  // twice what any initialisation reads
 
   std::uint64_t repaired_now() const noexcept {
     return (reports ? reports->repaired_transitions() : 0) +
@@ -138,6 +159,7 @@ TraceDecoder::Step TraceDecoder::take(const DeviceDescribed& described) {
   device.summary.name = described.device->name;
   device.summary.vendor = described.device->vendor;
   device.summary.product = described.device->product;
+  device.strings.clear();
   device.stale = true;
   leave(device);  // described anew, it was replugged
   return {};
@@ -223,6 +245,12 @@ TraceDecoder::Step TraceDecoder::take(const TraceNote& note) {
     return {};
   }
   if (const auto loss = noted_loss(note.text)) return lose({note.device, loss->count});
+  if (auto string = noted_string(note.text)) {
+    auto found = device(note.device);
+    if (!found) return tl::unexpected(std::move(found.error()));
+    auto& strings = (*found)->strings;
+    if (strings.size() < Device::kMostStrings) strings.push_back(*std::move(string));
+  }
   return {};
 }
 
@@ -268,7 +296,10 @@ TraceDecoder::Step TraceDecoder::prepare(Device& device) {
   identity.vendor = device.described.vendor;
   identity.product = device.described.product;
   identity.product_name = device.described.name;
-  auto decoder = PenDecoder::make(identity, device.described.report_descriptor);
+  const auto initializer = initialized(device.described, device.strings);
+  if (initializer) identity.firmware = initializer->firmware();
+  auto decoder = PenDecoder::make(identity, device.described.report_descriptor,
+                                  initializer ? initializer->parameters() : nullptr);
   device.described.report_descriptor = {};  // a decoder is made once a description
   if (!decoder) return refuse(device, std::move(decoder.error()));
   device.reports.emplace(std::move(*decoder));

@@ -259,6 +259,48 @@ TEST(TraceDecoder, ADeviceThatIsUnpluggedHasLiftedAndLeft) {
   EXPECT_EQ(trace.samples.back().state, PenState::kOutOfRange);
 }
 
+// Recorded: probe of Huion New 1060 Plus. 50800 x 31750 counts at 5080 lines an inch.
+const std::string kStringV2 =
+    "#limn string 200 12 03 70 c6 00 06 7c 00 ff 1f d8 13 03 0c 10 00 01 00\n";
+
+TEST(TraceDecoder, NotedStringsMakeAPenOfAProductThatNoTableKnows) {
+  const std::string pen = "N: Huion\nI: 3 256c 0999\n";
+  const std::string report = "E: 1.0 12 08 80 70 c6 06 7c 00 00 00 00 00 00\n";
+  EXPECT_TRUE(decode_trace(pen + report).failed);
+  const DecodedTrace trace = decode_trace(pen + "#limn string 201\n" + kStringV2 + report);
+  ASSERT_FALSE(trace.failed) << trace.error.what;
+  ASSERT_GE(trace.samples.size(), 1U);
+  EXPECT_EQ(trace.samples[0].x_mm, 254);
+  EXPECT_EQ(trace.samples[0].y_mm, 158.75);
+  EXPECT_EQ(trace.summary.devices[0].range.width_mm, 254);
+  // Described anew it is another device, of which nothing is known.
+  EXPECT_TRUE(decode_trace(pen + kStringV2 + report + "N: Huion\n" + report).failed);
+}
+
+TEST(TraceDecoder, NotedFirmwareChoosesTheRow) {
+  const std::string firmware = "HUION_T164_170520";
+  std::string note = "#limn string 201 " + std::string("24 03");
+  for (const char c : firmware) {
+    note += ' ';
+    note += "0123456789abcdef"[c >> 4];
+    note += "0123456789abcdef"[c & 15];
+    note += " 00";
+  }
+  const DecodedTrace trace = decode_trace("N: a\nI: 3 256c 006e\n" + note +
+                                          "\nE: 1.0 12 08 80 70 c6 06 7c 00 00 00 00 00 00\n");
+  ASSERT_FALSE(trace.failed) << trace.error.what;
+  EXPECT_EQ(trace.summary.devices[0].range.x_max, 55880) << "Huion Q11K's";
+}
+
+TEST(TraceDecoder, NotesThatAreNoStringsChangeNothing) {
+  const DecodedTrace trace = decode_trace(
+      "N: a\nI: 3 056a 0013\n#limn string\n#limn string 300 12\n#limn string 200 zz\n"
+      "#limn strings 200\n" +
+      kStringV2 + "E: 1.0 8 02 90 40 1f 20 03 00 00\n");
+  ASSERT_FALSE(trace.failed) << trace.error.what;
+  EXPECT_EQ(trace.samples.size(), 1U);
+}
+
 TEST(TraceDecoder, SalvagedDamageIsCountedAndTheFirstPartsAreKept) {
   std::string text = "N: pen\nI: 3 056a 0013\n";
   for (int i = 0; i < 40; ++i) text += "E: broken line\nE: 1.0 2 01 00\n";
