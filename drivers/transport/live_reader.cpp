@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <mutex>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -20,7 +21,7 @@
 namespace limn {
 namespace {
 
-enum class RecordKind : std::uint32_t { kReport, kFrame, kDescribed, kLost, kGone, kEnd };
+enum class RecordKind : std::uint32_t { kReport, kFrame, kDescribed, kNote, kLost, kGone, kEnd };
 
 /// Before the bytes of each record in the ring.
 struct RecordHead {
@@ -166,6 +167,7 @@ class LiveReader::Reading {
 
   void add(std::unique_ptr<Transport> transport) {
     TraceDevice device = transport->device();
+    const std::vector<std::string> notes = transport->notes();
     DeviceIndex index = 0;
     {
       const std::lock_guard lock(devices_mutex_);
@@ -181,7 +183,9 @@ class LiveReader::Reading {
       slots_[index].device = std::make_shared<const TraceDevice>(std::move(device));
       slots_[index].transport = std::move(transport);
     }
-    push_control({RecordKind::kDescribed, index, monotonic_clock().now().count()});
+    const std::int64_t now = monotonic_clock().now().count();
+    push_control({RecordKind::kDescribed, index, now});
+    for (const std::string& note : notes) push_control({RecordKind::kNote, index, now}, note);
   }
 
   void lose(DeviceIndex index, std::uint32_t count, bool estimated) noexcept {
@@ -209,8 +213,8 @@ class LiveReader::Reading {
 
   /// What is no report has room kept free for it. Where even that is gone (a device that comes and
   /// goes faster than anybody reads), it waits for the consumer.
-  void push_control(const RecordHead& head) noexcept {
-    while (!push(head, nullptr, 0, 0) && !closed_.load(std::memory_order_relaxed)) {
+  void push_control(const RecordHead& head, std::string_view note = {}) noexcept {
+    while (!push(head, note.data(), note.size(), 0) && !closed_.load(std::memory_order_relaxed)) {
       signal_descriptor(ready_.get());
       ::usleep(1000);
     }
@@ -310,6 +314,9 @@ std::optional<TraceEvent> LiveReader::take() {
     case RecordKind::kDescribed:
       described_ = reading_->described(head.device);
       return DeviceDescribed{described_.get()};
+    case RecordKind::kNote:
+      note_.assign(reinterpret_cast<const char*>(bytes), size);
+      return TraceNote{note_, head.device};
     case RecordKind::kLost:
       note_ = (head.estimated != 0 ? "lost? " : "lost ") + std::to_string(head.count);
       return TraceNote{note_, head.device};

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "input/base/time.hpp"
@@ -40,6 +42,14 @@ class Transport {
   virtual State drain(TransportSink& sink) noexcept = 0;
 
   static constexpr int kMostReports = 128;
+
+  /// What was learnt when it was opened, as notes of a recording (TraceNote) that follow its
+  /// description: decoding a recording needs no device.
+  const std::vector<std::string>& notes() const noexcept { return notes_; }
+  void add_note(std::string note) { notes_.push_back(std::move(note)); }
+
+ private:
+  std::vector<std::string> notes_;
 };
 
 /// Devices that come while others are read.

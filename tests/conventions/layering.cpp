@@ -29,8 +29,9 @@ const std::vector<Layer>& layers() {
 
       {"drivers/hid", {"input/base", "input/sample"}, {}},
       {"drivers/devices", {"input", "drivers/hid"}, {}},
+      // What a pen must be asked when it is opened is data of its tables.
       {"drivers/transport",
-       {"input"},
+       {"input", "drivers/devices"},
        {"libusb-1.0/", "hidapi/", "linux/", "libevdev/", "libudev.h", "posix", "sys/"}},
 
       {"modeler/base", {"input/base"}, {"Eigen/"}},

@@ -13,6 +13,7 @@
 #include "drivers/transport/hidraw_transport.hpp"
 #include "drivers/transport/live_reader.hpp"
 #include "drivers/transport/paced_reader.hpp"
+#include "input/trace/hid_recorder_writer.hpp"
 #include "tests/support/alloc_guard.hpp"
 
 namespace limn::test {
@@ -86,6 +87,35 @@ std::string text_of(const TraceEvent& event) {
 
 std::string next(LiveReader& reader) { return text_of(*reader.next()); }
 
+/// Devices that the test plugs in.
+class TestHotplug final : public Hotplug {
+ public:
+  TestHotplug() {
+    if (::pipe(ends_) != 0) std::abort();
+  }
+  ~TestHotplug() override {
+    ::close(ends_[0]);
+    ::close(ends_[1]);
+  }
+  int poll_descriptor() const noexcept override { return ends_[0]; }
+  std::vector<std::unique_ptr<Transport>> arrived() override {
+    const std::lock_guard lock(mutex_);
+    char byte = 0;
+    EXPECT_EQ(::read(ends_[0], &byte, 1), 1);
+    return std::move(waiting_);
+  }
+  void plug_in(std::unique_ptr<Transport> transport) {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(transport));
+    EXPECT_EQ(::write(ends_[1], "x", 1), 1);
+  }
+
+ private:
+  int ends_[2];
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Transport>> waiting_;
+};
+
 TEST(LiveReader, GivesWhatADeviceSends) {
   std::unique_ptr<Transport> transport;
   FarEnd device(pen(), transport);
@@ -101,6 +131,64 @@ TEST(LiveReader, GivesWhatADeviceSends) {
   EXPECT_EQ(next(*reader), "note 0 gone");
   EXPECT_EQ(next(*reader), "end");
   EXPECT_EQ(next(*reader), "end");
+}
+
+TEST(LiveReader, TellsNotesRightAfterTheDescriptionEachTimeADeviceComes) {
+  std::unique_ptr<Transport> transport;
+  FarEnd device(pen(), transport);
+  transport->add_note("string 201");
+  transport->add_note("string 200 12 03");
+  auto hotplug = std::make_unique<TestHotplug>();
+  TestHotplug& port = *hotplug;
+  device.send({1});
+  const auto reader = start(std::move(transport), std::move(hotplug));
+  EXPECT_EQ(next(*reader), "described 0 A Pen");
+  EXPECT_EQ(next(*reader), "note 0 string 201");
+  EXPECT_EQ(next(*reader), "note 0 string 200 12 03");
+  EXPECT_EQ(next(*reader), "report 0 1");
+  device.leave();
+  EXPECT_EQ(next(*reader), "note 0 gone");
+  std::unique_ptr<Transport> back;
+  FarEnd again(pen(), back);
+  back->add_note("string 201 04 03 41 00");
+  port.plug_in(std::move(back));
+  EXPECT_EQ(next(*reader), "described 0 A Pen");
+  EXPECT_EQ(next(*reader), "note 0 string 201 04 03 41 00");
+}
+
+// Recorded: probe of Huion New 1060 Plus; no table knows product 0999.
+TEST(LiveReader, ARecordingOfAnInitialisedPenDecodesWithoutIt) {
+  TraceDevice described = pen();
+  described.vendor = 0x256C;
+  described.product = 0x0999;
+  described.report_descriptor = {};
+  std::unique_ptr<Transport> transport;
+  FarEnd device(described, transport);
+  transport->add_note("string 201 04 03 41 00");
+  transport->add_note("string 200 12 03 70 c6 00 06 7c 00 ff 1f d8 13 03 0c 10 00 01 00");
+  device.send({8, 0x80, 0x70, 0xC6, 0x06, 0x7C, 0, 0, 0, 0, 0, 0});
+  device.leave();
+  auto live = start(std::move(transport));
+  StringSink file;
+  HidRecorderWriter writer(file);
+  for (bool ended = false; !ended;) {
+    const auto event = *live->next();
+    if (const auto* one = std::get_if<DeviceDescribed>(&event)) {
+      ASSERT_TRUE(writer.describe(*one->device));
+    } else if (const auto* note = std::get_if<TraceNote>(&event)) {
+      ASSERT_TRUE(writer.note(note->text, note->device));
+    } else if (const auto* report = std::get_if<Report>(&event)) {
+      ASSERT_TRUE(writer.write(*report));
+    }
+    ended = std::holds_alternative<TraceEnd>(event);
+  }
+  TraceDecoder decoder(*open_trace(memory_bytes(file.text())));
+  const auto sample = decoder.next();
+  ASSERT_TRUE(sample) << sample.error().what;
+  ASSERT_NE(*sample, nullptr);
+  EXPECT_EQ((*sample)->x_mm, 254);
+  EXPECT_EQ((*sample)->y_mm, 158.75);
+  EXPECT_EQ(decoder.summary().devices[0].kind, "UC-Logic v2");
 }
 
 TEST(LiveReader, StampsWhenItReads) {
@@ -293,35 +381,6 @@ TEST(OpenMessages, AFloodHasNoMoreThanItsShare) {
   EXPECT_EQ(transport->drain(sink), Transport::State::kOpen);
   EXPECT_EQ(sink.reports, Transport::kMostReports);
 }
-
-/// Devices that the test plugs in.
-class TestHotplug final : public Hotplug {
- public:
-  TestHotplug() {
-    if (::pipe(ends_) != 0) std::abort();
-  }
-  ~TestHotplug() override {
-    ::close(ends_[0]);
-    ::close(ends_[1]);
-  }
-  int poll_descriptor() const noexcept override { return ends_[0]; }
-  std::vector<std::unique_ptr<Transport>> arrived() override {
-    const std::lock_guard lock(mutex_);
-    char byte = 0;
-    EXPECT_EQ(::read(ends_[0], &byte, 1), 1);
-    return std::move(waiting_);
-  }
-  void plug_in(std::unique_ptr<Transport> transport) {
-    const std::lock_guard lock(mutex_);
-    waiting_.push_back(std::move(transport));
-    EXPECT_EQ(::write(ends_[1], "x", 1), 1);
-  }
-
- private:
-  int ends_[2];
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Transport>> waiting_;
-};
 
 TEST(LiveReader, ADeviceThatComesBackKeepsItsIndex) {
   std::unique_ptr<Transport> transport;
