@@ -13,6 +13,7 @@ constexpr int kHexadecimal = 16;
 constexpr std::uint16_t kEvSyn = 0;  // <linux/input-event-codes.h>
 constexpr std::uint16_t kSynReport = 0;
 constexpr std::uint16_t kAbsMax = 0x3F;
+constexpr std::string_view kDescriptorPrefix = "#limn R:";
 
 /// A comment may stand behind the fields of a line, but for a name, to which a # may belong.
 std::string_view without_comment(std::string_view text) {
@@ -28,6 +29,10 @@ EvemuReader::EvemuReader(std::unique_ptr<ByteSource> bytes, TraceOptions options
 
 Expected<void> EvemuReader::take(const Line& line) {
   const std::string_view text = line.text;
+  if (text.starts_with(kDescriptorPrefix)) {
+    if (!line.terminated) return cut_short();
+    return take_descriptor(text.substr(kDescriptorPrefix.size()));
+  }
   if (text.empty() || text[0] == '#' || text::trimmed(text).empty()) return {};
   const bool keyed = text.size() >= 2 && text[1] == ':' && text::is_letter(text[0]);
   if (keyed && text[0] == 'E') return take_event(text.substr(2), line.terminated);
@@ -82,6 +87,20 @@ Expected<void> EvemuReader::take_ids(std::string_view rest) {
   device.vendor = ids[1];
   device.product = ids[2];
   device.version = ids[3];
+  return {};
+}
+
+Expected<void> EvemuReader::take_descriptor(std::string_view rest) {
+  const auto length = text::parse_integer<std::uint32_t>(text::take_word(rest));
+  if (!length || *length > kMaxDescriptorBytes) {
+    return damaged("#limn R: wants a length of at most " + std::to_string(kMaxDescriptorBytes));
+  }
+  std::vector<std::uint8_t> bytes(*length);
+  const auto read = text::parse_hex_bytes(rest, bytes);
+  if (!read.bad.empty() || read.count != *length) {
+    return damaged("#limn R: wants " + text::counted(*length, "byte") + " behind the length");
+  }
+  description().report_descriptor = std::move(bytes);
   return {};
 }
 

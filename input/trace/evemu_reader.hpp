@@ -23,6 +23,7 @@ class EvemuReader final : public LineTraceReader {
 
   Expected<void> take_name(std::string_view rest);
   Expected<void> take_ids(std::string_view rest);
+  Expected<void> take_descriptor(std::string_view rest);
   Expected<void> take_axis(std::string_view rest);
   Expected<void> take_event(std::string_view rest, bool terminated);
   Expected<void> add_to_frame(const EvdevEvent& event);

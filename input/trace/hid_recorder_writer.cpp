@@ -1,34 +1,9 @@
 #include "input/trace/hid_recorder_writer.hpp"
 
-#include <array>
-#include <charconv>
-
 #include "input/trace/text.hpp"
 
 namespace limn {
 namespace {
-
-template <class T>
-void append_number(std::string& out, T value, int base = 10, std::size_t width = 1) {
-  std::array<char, 24> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, base).ptr;
-  const auto count = static_cast<std::size_t>(end - digits.data());
-  if (count < width) out.append(width - count, '0');
-  out.append(digits.data(), count);
-}
-
-void append_time(std::string& out, Timestamp time) {
-  constexpr std::int64_t kNanosecond = 1'000'000'000;
-  constexpr std::int64_t kMicrosecond = 1'000;
-  const std::int64_t fraction = time.count() % kNanosecond;
-  append_number(out, time.count() / kNanosecond);
-  out += '.';
-  if (fraction % kMicrosecond == 0) {
-    append_number(out, fraction / kMicrosecond, 10, 6);
-  } else {
-    append_number(out, fraction, 10, 9);
-  }
-}
 
 tl::unexpected<Error> too_large(std::string_view noun, std::size_t size, std::size_t limit) {
   return fail(ErrorCode::kLimit, "",
@@ -50,24 +25,24 @@ Expected<void> HidRecorderWriter::describe(const TraceDevice& device) {
   begin_device(device.index);
   if (!device.report_descriptor.empty()) {
     lines_ += "R: ";
-    append_bytes(device.report_descriptor);
+    text::append_counted_bytes(lines_, device.report_descriptor);
   }
   if (!device.name.empty()) {
     lines_ += "N: ";
-    append_text(device.name);
+    text::append_one_line(lines_, device.name);
   }
   if (!device.physical_path.empty()) {
     lines_ += "P: ";
-    append_text(device.physical_path);
+    text::append_one_line(lines_, device.physical_path);
   }
   if (device.bus != 0 || device.vendor != 0 || device.product != 0) {
     constexpr int kHexadecimal = 16;
     lines_ += "I: ";
-    append_number(lines_, device.bus, kHexadecimal);
+    text::append_number(lines_, device.bus, kHexadecimal);
     lines_ += ' ';
-    append_number(lines_, device.vendor, kHexadecimal, 4);
+    text::append_number(lines_, device.vendor, kHexadecimal, 4);
     lines_ += ' ';
-    append_number(lines_, device.product, kHexadecimal, 4);
+    text::append_number(lines_, device.product, kHexadecimal, 4);
     lines_ += '\n';
   }
   return flush(device.index);
@@ -83,9 +58,9 @@ Expected<void> HidRecorderWriter::write(const Report& report) {
   }
   begin_device(report.device);
   lines_ += "E: ";
-  append_time(lines_, report.time);
+  text::append_seconds(lines_, report.time);
   lines_ += ' ';
-  append_bytes(report.bytes);
+  text::append_counted_bytes(lines_, report.bytes);
   return flush(report.device);
 }
 
@@ -108,7 +83,7 @@ Expected<void> HidRecorderWriter::append_note(std::string_view text) {
   }
   lines_ += kPrefix;
   if (!text.empty()) lines_ += ' ';
-  append_text(text);
+  text::append_one_line(lines_, text);
   return {};
 }
 
@@ -117,28 +92,7 @@ void HidRecorderWriter::begin_device(DeviceIndex device) {
   lines_.clear();
   if (selected_ == device) return;
   lines_ += "D: ";
-  append_number(lines_, device);
-  lines_ += '\n';
-}
-
-/// "length bytes" and the line end.
-void HidRecorderWriter::append_bytes(std::span<const std::uint8_t> bytes) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  append_number(lines_, bytes.size());
-  for (const std::uint8_t byte : bytes) {
-    lines_ += ' ';
-    lines_ += kDigits[byte >> 4];
-    lines_ += kDigits[byte & 0xF];
-  }
-  lines_ += '\n';
-}
-
-/// `text` on one line, and the line end.
-void HidRecorderWriter::append_text(std::string_view text) {
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    lines_ += code < ' ' || code == 0x7F ? ' ' : c;
-  }
+  text::append_number(lines_, device);
   lines_ += '\n';
 }
 

@@ -38,8 +38,6 @@ class HidRecorderWriter {
 
  private:
   void begin_device(DeviceIndex device);
-  void append_bytes(std::span<const std::uint8_t> bytes);
-  void append_text(std::string_view text);
   Expected<void> append_note(std::string_view text);
   Expected<void> flush(std::optional<DeviceIndex> device);
 

@@ -107,6 +107,38 @@ std::string quoted(std::string_view text) {
   return result + (text.size() > kLongest ? "..\"" : "\"");
 }
 
+void append_seconds(std::string& out, Timestamp time) {
+  constexpr std::int64_t kNanosecond = 1'000'000'000;
+  constexpr std::int64_t kMicrosecond = 1'000;
+  const std::int64_t fraction = time.count() % kNanosecond;
+  append_number(out, time.count() / kNanosecond);
+  out += '.';
+  if (fraction % kMicrosecond == 0) {
+    append_number(out, fraction / kMicrosecond, 10, 6);
+  } else {
+    append_number(out, fraction, 10, 9);
+  }
+}
+
+void append_counted_bytes(std::string& out, std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  append_number(out, bytes.size());
+  for (const std::uint8_t byte : bytes) {
+    out += ' ';
+    out += kDigits[byte >> 4];
+    out += kDigits[byte & 0xF];
+  }
+  out += '\n';
+}
+
+void append_one_line(std::string& out, std::string_view text) {
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    out += code < ' ' || code == 0x7F ? ' ' : c;
+  }
+  out += '\n';
+}
+
 std::string counted(std::uint64_t count, std::string_view noun) {
   std::string result = std::to_string(count) + ' ';
   result.append(noun);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -10,7 +11,7 @@
 
 #include "input/base/time.hpp"
 
-// Scanning of one line of text: blanks, words, numbers. Shared by all text formats.
+// Scanning and writing of one line of text: blanks, words, numbers. Shared by all text formats.
 
 namespace limn::text {
 
@@ -70,6 +71,26 @@ bool is_prose(std::string_view line) noexcept;
 
 /// `text` in quotes for an error message: at most 24 characters, none but printable ones.
 std::string quoted(std::string_view text);
+
+/// Appends `value` with at least `width` digits, zeros in front.
+template <class T>
+void append_number(std::string& out, T value, int base = 10, std::size_t width = 1) {
+  std::array<char, 24> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, base).ptr;
+  const auto count = static_cast<std::size_t>(end - digits.data());
+  if (count < width) out.append(width - count, '0');
+  out.append(digits.data(), count);
+}
+
+/// Appends a time in seconds: six decimals, or nine where microseconds do not say it all.
+/// Precondition: not negative.
+void append_seconds(std::string& out, Timestamp time);
+
+/// Appends how many bytes there are, the bytes in hexadecimal, and the line end.
+void append_counted_bytes(std::string& out, std::span<const std::uint8_t> bytes);
+
+/// Appends `text`, its control characters made blanks, and the line end.
+void append_one_line(std::string& out, std::string_view text);
 
 /// "1 byte", "2 bytes".
 std::string counted(std::uint64_t count, std::string_view noun);

@@ -27,7 +27,10 @@ namespace limn {
 ///               bytes, ended by a blank line, the next header or the end; but a report whose last
 ///               line is full may go on, so there the end alone is damage. DeviceIndex is the
 ///               interface number, plus 256 times the ordinal of the bus and device address.
-/// kEvemu        1.0 to 1.3, the version line optional; `N:`, `I:`, `P:`, `B:`, `A:` and `E:`.
+/// kEvemu        1.0 to 1.3, the version line optional; `N:`, `I:`, `P:`, `B:`, `A:` and `E:`; and
+/// in
+///               a comment, so that other tools pass it over, `#limn R: length bytes`: the report
+///               descriptor behind the kernel's axes.
 /// kStrokeCsv    `t,x,y,p[,alt,az]`: seconds, mm, mm, 0..1, degrees, degrees; the header line is
 ///               optional, `#` lines and blank lines are passed over. Every row is a PenSample of
 ///               an ordinary pen in contact. alt and az become tilt, see input/sample/tilt.hpp; an
@@ -75,7 +78,7 @@ struct TraceDevice {
   std::uint16_t product = 0;
   std::uint16_t version = 0;
   std::vector<std::uint8_t> report_descriptor;  ///< empty: not known
-  std::vector<EvdevAxis> axes;                  ///< evemu only, in file order
+  std::vector<EvdevAxis> axes;                  ///< of kernel-decoded devices: evemu, evdev
 };
 
 /// The trace describes a device: sent before its first report or frame, and again when the trace
