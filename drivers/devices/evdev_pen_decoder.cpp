@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "drivers/devices/pen_spec.hpp"
+#include "drivers/hid/descriptor_parser.hpp"
+#include "drivers/hid/pen_layout.hpp"
 
 namespace limn {
 namespace {
@@ -84,6 +88,33 @@ bool is_touch_axis(const EvdevAxis& axis) noexcept {
   return axis.code >= kAbsMtFirst && axis.code <= kAbsMtLast;
 }
 
+/// The pens that the report descriptor declares; none where it is unknown or broken.
+std::vector<hid::PenLayout> declared_pens(const TraceDevice& device) {
+  const auto descriptor = hid::parse_descriptor(device.report_descriptor);
+  return descriptor ? hid::pen_layouts(*descriptor) : std::vector<hid::PenLayout>();
+}
+
+/// Counts per mm or radian of a kernel axis by the HID field behind it: that with its very range
+/// and a declared unit. Nothing where no pen has one, or two disagree.
+std::optional<double> declared_counts_per_unit(const std::vector<hid::PenLayout>& pens,
+                                               const EvdevAxis& axis) {
+  std::optional<double> found;
+  for (const hid::PenLayout& pen : pens) {
+    const hid::AxisReader* field = nullptr;
+    if (axis.code == kAbsX) field = &pen.x;
+    if (axis.code == kAbsY) field = &pen.y;
+    if (axis.code == kAbsTiltX) field = &pen.tilt_x;
+    if (axis.code == kAbsTiltY) field = &pen.tilt_y;
+    if (field == nullptr || !*field || !field->has_unit || !(field->map.scale > 0)) continue;
+    const hid::Range range = field->reader.logical();
+    if (range.minimum != axis.minimum || range.maximum != axis.maximum) continue;
+    const double counts = 1 / field->map.scale;
+    if (found && *found != counts) return std::nullopt;
+    found = counts;
+  }
+  return found;
+}
+
 }  // namespace
 
 EvdevPenDecoder::EvdevPenDecoder() : output_(std::make_unique<PenOutput>()) {}
@@ -96,6 +127,7 @@ Expected<EvdevPenDecoder> EvdevPenDecoder::make(const TraceDevice& device) {
 
 Expected<void> EvdevPenDecoder::take_axes(const TraceDevice& device) {
   wacom_ = device.vendor == kWacomVendor;
+  const std::vector<hid::PenLayout> pens = declared_pens(device);
   const auto take = [&](std::uint16_t code) {
     Axis axis;
     for (const EvdevAxis& declared : device.axes) {
@@ -107,6 +139,7 @@ Expected<void> EvdevPenDecoder::take_axes(const TraceDevice& device) {
         // Kernels before 3.19 shifted Wacom's -64..63 to 0..127.
         axis.middle = declared.minimum == 0 ? (span_of(0, declared.maximum) + 1) / 2 : 0;
       }
+      axis.per_unit = declared_counts_per_unit(pens, declared).value_or(axis.per_unit);
     }
     return axis;
   };
@@ -308,6 +341,22 @@ PenRange EvdevPenDecoder::range() const noexcept {
   range.width_mm = span_of(x_.minimum, x_.maximum) / x_.per_unit;
   range.height_mm = span_of(y_.minimum, y_.maximum) / y_.per_unit;
   return range;
+}
+
+PenAxes EvdevPenDecoder::axes() const noexcept {
+  PenAxes axes;
+  if (!has_pen_) return axes;
+  const auto add = [&axes](const Axis& axis, PenAxis which) {
+    if (axis.present) axes.add(which);
+  };
+  add(x_, PenAxis::kX);
+  add(y_, PenAxis::kY);
+  add(pressure_, PenAxis::kPressure);
+  add(distance_, PenAxis::kDistance);
+  add(tilt_x_, PenAxis::kTiltX);
+  add(tilt_y_, PenAxis::kTiltY);
+  add(twist_, PenAxis::kTwist);
+  return axes;
 }
 
 }  // namespace limn

@@ -30,8 +30,11 @@ namespace limn {
 /// Axes come with their first event: until then the kernel's value is unknown.
 class EvdevPenDecoder {
  public:
-  /// mm per count come from the axes' resolution, else from the table's row of the device.
-  /// Error: kMissing naming the axis whose size nothing tells.
+  /// Counts per mm (per radian of tilt) come from the device's report descriptor, where one is
+  /// known and a pen in it has an axis of the kernel's very range with a unit; else from the
+  /// kernel's resolution, which is that rounded to a whole number (of 2,486 pen axes 32 % are off
+  /// by more than 0.5 %, the worst by 4.7 %); else from the table's row of the device. Error:
+  /// kMissing naming the axis whose size nothing tells.
   static Expected<EvdevPenDecoder> make(const TraceDevice& device);
 
   /// The samples of one frame, valid until the next call. Allocates nothing.
@@ -43,6 +46,8 @@ class EvdevPenDecoder {
   /// False for keyboards, pads and touch devices: decode gives nothing.
   bool has_pen() const noexcept { return has_pen_; }
   PenRange range() const noexcept;
+  /// What the kernel's axes can give. Not kSerial, which is no axis of the kernel's.
+  PenAxes axes() const noexcept;
   std::uint64_t repaired_transitions() const noexcept { return output_->machine().repaired(); }
 
  private:

@@ -1,6 +1,7 @@
 #include "drivers/devices/pen_decoder.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <utility>
 #include <vector>
 
@@ -237,6 +238,35 @@ PenRange PenDecoder::range() const noexcept {
     range.height_mm = layout.y.map(y.maximum);
   }
   return range;
+}
+
+PenAxes PenDecoder::axes() const noexcept {
+  PenAxes axes;
+  const auto add = [&axes](bool given, std::initializer_list<PenAxis> which) {
+    if (!given) return;
+    for (const PenAxis axis : which) axes.add(axis);
+  };
+  const PenSpec* row = spec();
+  if (row == nullptr && generic_.layouts().empty()) return axes;
+  add(true, {PenAxis::kX, PenAxis::kY});
+  if (row != nullptr) {
+    const FamilyAxes given = family_axes(row->family);
+    add(row->pressure_max > 0, {PenAxis::kPressure});
+    add(row->distance_max > 0, {PenAxis::kDistance});
+    add(row->tilt || given.tilt, {PenAxis::kTiltX, PenAxis::kTiltY});
+    add(given.twist, {PenAxis::kTwist});
+    add(given.serial, {PenAxis::kSerial});
+    return axes;
+  }
+  const hid::PenLayout& pen = generic_.layouts().front();
+  const bool direction = pen.azimuth && pen.altitude;
+  add(static_cast<bool>(pen.pressure), {PenAxis::kPressure});
+  add(pen.tilt_x || direction, {PenAxis::kTiltX});
+  add(pen.tilt_y || direction, {PenAxis::kTiltY});
+  add(static_cast<bool>(pen.twist), {PenAxis::kTwist});
+  add(static_cast<bool>(pen.distance), {PenAxis::kDistance});
+  add(static_cast<bool>(pen.serial), {PenAxis::kSerial});
+  return axes;
 }
 
 }  // namespace limn

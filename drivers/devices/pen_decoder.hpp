@@ -98,6 +98,10 @@ class PenDecoder {
   /// All zero without a pen; of a device with several rows, of spec().
   PenRange range() const noexcept;
 
+  /// What its samples can have, with the pen that can do most: of a table's row as its family gives
+  /// it, else as the descriptor declares it. Empty without a pen.
+  PenAxes axes() const noexcept;
+
   /// Illegal state transitions that the device made and that were repaired.
   std::uint64_t repaired_transitions() const noexcept { return output_->machine().repaired(); }
 

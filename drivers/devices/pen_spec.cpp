@@ -83,6 +83,15 @@ std::string_view name(PenFamily family) noexcept {
   return kNames[static_cast<std::size_t>(family)];
 }
 
+FamilyAxes family_axes(PenFamily family) noexcept {
+  const bool intuos = family >= PenFamily::kIntuos && family <= PenFamily::kCintiq;
+  if (intuos || family == PenFamily::kIntuosPro2Bluetooth) return {true, true, true};
+  if (family == PenFamily::kIntuosArt || family == PenFamily::kIntuosSmallBluetooth) {
+    return {false, false, true};
+  }
+  return {};
+}
+
 std::span<const PenSpec> pen_specs() noexcept {
   static const std::vector<PenSpec> rows = all_pens();
   return rows;

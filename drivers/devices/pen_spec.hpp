@@ -46,6 +46,14 @@ inline constexpr PenFamily kLastWacomFamily = PenFamily::kTabletPc;
 /// "Intuos3", "Graphire", ..
 std::string_view name(PenFamily family) noexcept;
 
+/// What the pens of a family can give beyond what its rows say.
+struct FamilyAxes {
+  bool tilt = false;
+  bool twist = false;  ///< of an art pen
+  bool serial = false;
+};
+FamilyAxes family_axes(PenFamily family) noexcept;
+
 /// One row of a vendor's table: what the device's reports do not say themselves. A device that
 /// speaks differently before and after its initialisation has a row for either, told apart by the
 /// report ID. Where models share their USB ids, the conditions at the end tell rows apart.

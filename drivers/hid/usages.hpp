@@ -35,6 +35,7 @@ inline constexpr std::uint16_t kWacomG11 = 0xFF11;
 namespace usage {
 inline constexpr Usage kPointer{page::kGenericDesktop, 0x01};
 inline constexpr Usage kMouse{page::kGenericDesktop, 0x02};
+inline constexpr Usage kMultiAxisController{page::kGenericDesktop, 0x08};  ///< a 3D mouse
 inline constexpr Usage kX{page::kGenericDesktop, 0x30};
 inline constexpr Usage kY{page::kGenericDesktop, 0x31};
 inline constexpr Usage kZ{page::kGenericDesktop, 0x32};

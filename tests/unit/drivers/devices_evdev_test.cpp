@@ -3,6 +3,7 @@
 
 #include "drivers/devices/evdev_pen_decoder.hpp"
 #include "tests/unit/drivers/devices_support.hpp"
+#include "tests/unit/drivers/hid_items.hpp"
 
 namespace limn {
 namespace {
@@ -206,6 +207,65 @@ TEST_F(EvdevPen, ASizeComesFromTheTableWhereTheKernelKnewNone) {
   EXPECT_EQ(unknown.error().code, ErrorCode::kMissing);
   EXPECT_NE(unknown.error().what.find("ABS_X"), std::string::npos);
   EXPECT_NE(unknown.error().what.find("1234:5678"), std::string::npos);
+}
+
+/// A pen whose X has 100 units a mm as declared, 0 to 20000 over 20 cm, whose tilt is in degrees,
+/// and whose Y says nothing of its size.
+std::vector<std::uint8_t> pen_descriptor(std::int64_t physical_x = 20000) {
+  hid::test::Items items;
+  items.usage_page(hid::page::kDigitizer).usage(0x02).collection(1).usage(0x20).collection(0);
+  items.usage_page(hid::page::kGenericDesktop).report_size(16).report_count(1);
+  items.unit(0x11).unit_exponent(0x0D);  // 10^-3 cm
+  items.usage(0x30).logical(100, 20100).physical(0, physical_x).input(0x02);
+  items.unit(0).physical(0, 0).usage(0x31).logical(0, 10000).input(0x02);
+  items.usage_page(hid::page::kDigitizer).unit(0x14).unit_exponent(0).report_size(8);
+  items.usage(0x3D).logical(-64, 63).physical(-64, 63).input(0x02);
+  items.unit(0).physical(0, 0).usage(0x42).logical(0, 1).input(0x02).end_collection();
+  items.end_collection();
+  return {items.bytes().begin(), items.bytes().end()};
+}
+
+TEST_F(EvdevPen, SizesOfTheReportDescriptorBeatTheKernelsRoundedOnes) {
+  TraceDevice device = tablet(0x1234, 96);  // as a kernel rounds: 4 % off
+  device.report_descriptor = pen_descriptor();
+  use(device);
+  const PenSample sample =
+      one({{kAbs, kX, 10100}, {kAbs, kY, 960}, {kAbs, kTiltX, 45}, {kKey, kToolPen, 1}});
+  EXPECT_DOUBLE_EQ(sample.x_mm, 100) << "not 10000 / 96";
+  EXPECT_DOUBLE_EQ(sample.y_mm, 10) << "the descriptor has no size of Y";
+  EXPECT_DOUBLE_EQ(sample.tilt_x_rad, 45 * kDegree) << "not 45 / 57";
+  EXPECT_DOUBLE_EQ(decoder_->range().width_mm, 200);
+}
+
+TEST_F(EvdevPen, ADescriptorOfAnotherRangeOrOfNoneDecidesNothing) {
+  TraceDevice device = tablet();
+  device.axes[0].maximum = 20101;  // a driver has changed it
+  device.report_descriptor = pen_descriptor(40000);
+  use(device);
+  EXPECT_EQ(one({{kAbs, kX, 10100}, {kAbs, kY, 0}, {kKey, kToolPen, 1}}).x_mm, 100);
+  device = tablet();
+  device.report_descriptor = {0x05};  // broken
+  use(device);
+  EXPECT_EQ(one({{kAbs, kX, 10100}, {kAbs, kY, 0}, {kKey, kToolPen, 1}}).x_mm, 100);
+}
+
+TEST_F(EvdevPen, PensThatDisagreeDecideNothing) {
+  TraceDevice device = tablet();
+  device.report_descriptor = pen_descriptor(40000);
+  use(device);
+  EXPECT_EQ(one({{kAbs, kX, 10100}, {kAbs, kY, 0}, {kKey, kToolPen, 1}}).x_mm, 200);
+  const auto other = pen_descriptor(20000);
+  device.report_descriptor.insert(device.report_descriptor.end(), other.begin(), other.end());
+  use(device);
+  EXPECT_EQ(one({{kAbs, kX, 10100}, {kAbs, kY, 0}, {kKey, kToolPen, 1}}).x_mm, 100);
+}
+
+TEST_F(EvdevPen, TheDescriptorKnowsWhatTheKernelDoesNot) {
+  TraceDevice device = tablet(0x1234, 0);
+  device.axes[1].resolution = 100;
+  device.report_descriptor = pen_descriptor();
+  use(device);
+  EXPECT_DOUBLE_EQ(decoder_->range().width_mm, 200);
 }
 
 TEST_F(EvdevPen, ATiltRangeWithoutResolutionIsDegreesOrHundredths) {
