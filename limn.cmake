@@ -9,6 +9,10 @@ set(LIMN_WARNINGS
 # on every compiler: no fused multiply-add appears where the source has none.
 function(limn_set_flags target)
   target_compile_options(${target} PRIVATE ${LIMN_WARNINGS} -ffp-contract=off)
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    # Small programs can leave out what they do not call (-Wl,--gc-sections).
+    target_compile_options(${target} PRIVATE -ffunction-sections -fdata-sections)
+  endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC 12 sees overlaps in std::string's own code at -O2 and -O3 (GCC bug 105651).
     target_compile_options(${target} PRIVATE -Wno-restrict)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 
 #include "tests/bench/row.hpp"
@@ -11,8 +12,13 @@ using RowSink = std::function<void(const Row&)>;
 
 /// Each of these measures one area.
 void decode_area(const RowSink& sink);
+
+/// Decodes `count` reports of a generic pen and nothing else, for who counts instructions.
+void decode_reports(std::size_t count);
+
 void trace_area(const RowSink& sink);
 void transport_area(const RowSink& sink);
+void footprint_area(const RowSink& sink);
 void fit_area(const RowSink& sink);
 
 }  // namespace limn::bench

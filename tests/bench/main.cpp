@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <iterator>
 #include <string>
 #include <string_view>
@@ -26,6 +27,8 @@ constexpr Area kAreas[] = {
     {"trace", "reading a hid-recorder file: time, and memory for a gigabyte",
      limn::bench::trace_area},
     {"transport", "replayed and live reports: how late they come", limn::bench::transport_area},
+    {"footprint", "an embedded reader of pens: its file, and its memory at 1 kHz",
+     limn::bench::footprint_area},
     {"fit", "curves through strokes: time and control points", limn::bench::fit_area},
 };
 
@@ -53,7 +56,9 @@ constexpr const char* kHelp =
     "costs; ratio = peer / limn, so above 1 limn is better. Without AREA everything is measured.\n"
     "  --format  text: a table; jsonl: one object a row\n"
     "  --require exit with 1 if a row misses its goal\n"
-    "  --list    name the areas and end\n";
+    "  --list    name the areas and end\n"
+    "  --decode-reports COUNT  decode that many reports and end, for tools that count "
+    "instructions\n";
 
 struct Arguments {
   std::vector<const Area*> areas;
@@ -61,7 +66,8 @@ struct Arguments {
   bool require = false;
   bool list = false;
   bool help = false;
-  std::string complaint;  ///< what is wrong; empty if nothing is
+  std::size_t decode_count = 0;  ///< --decode-reports
+  std::string complaint;         ///< what is wrong; empty if nothing is
 };
 
 const Area* find_area(std::string_view name) {
@@ -84,6 +90,10 @@ Arguments parse(const std::vector<std::string_view>& words) {
       const std::string_view format = i + 1 < words.size() ? words[++i] : "";
       result.as_json = format == "jsonl";
       if (format != "jsonl" && format != "text") result.complaint = "--format is text or jsonl";
+    } else if (word == "--decode-reports") {
+      const std::string count(i + 1 < words.size() ? words[++i] : "");
+      result.decode_count = std::strtoul(count.c_str(), nullptr, 10);
+      if (result.decode_count == 0) result.complaint = "--decode-reports takes a number above 0";
     } else if (const Area* area = find_area(word)) {
       result.areas.push_back(area);
     } else {
@@ -109,6 +119,10 @@ int main(int argc, char** argv) {
   }
   if (arguments.list) {
     list_areas();
+    return 0;
+  }
+  if (arguments.decode_count > 0) {
+    limn::bench::decode_reports(arguments.decode_count);
     return 0;
   }
   int missed = 0;

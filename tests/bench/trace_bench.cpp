@@ -8,13 +8,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 
 #include "input/trace/trace.hpp"
 #include "tests/bench/areas.hpp"
 #include "tests/bench/measure.hpp"
+#include "tests/bench/process_memory.hpp"
 #include "tests/bench/simulated_reports.hpp"
 
 namespace limn::bench {
@@ -69,15 +69,6 @@ std::size_t count_reports(const std::string& text) {
   return reports;
 }
 
-/// "VmHWM" of a process: the most memory it had resident, in kB. From there and not from rusage,
-/// which also counts what the parent had resident before the exec.
-std::optional<double> peak_resident_mb(pid_t pid) {
-  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with("VmHWM:")) return std::atof(line.c_str() + 6) * 1024 / 1e6;
-  return std::nullopt;
-}
-
 bool write_all(int file, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t n = write(file, text.data() + done, text.size() - done);
@@ -111,7 +102,7 @@ std::optional<double> memory_of_decoding_a_gigabyte(const fs::path& limn,
     fed = write_all(ends[1], text);
     sent += text.size();
   }
-  const auto peak = peak_resident_mb(child);  // while it still waits for more
+  const auto peak = peak_resident_bytes(child);  // while it still waits for more
   close(ends[1]);
   int status = 0;
   waitpid(child, &status, 0);
@@ -134,7 +125,7 @@ void trace_area(const RowSink& sink) {
   signal(SIGPIPE, SIG_IGN);  // a child that dies shows as a failed write
   const fs::path limn = fs::read_symlink("/proc/self/exe").parent_path() / "limn";
   if (const auto peak = memory_of_decoding_a_gigabyte(limn, stream)) {
-    sink({"trace/limn decode of 1 GB, memory", *peak, "MB resident", std::nullopt,
+    sink({"trace/limn decode of 1 GB, memory", *peak / 1e6, "MB resident", std::nullopt,
           at_most(kMostResidentMb)});
   } else {
     std::fprintf(stderr, "limn-bench: no figure for memory: \"%s decode -\" did not run\n",
