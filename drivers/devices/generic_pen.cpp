@@ -196,6 +196,29 @@ std::uint32_t GenericPen::count_lost(const hid::PenLayout& layout, Bytes report)
   return step == 0 ? 0 : static_cast<std::uint32_t>(step - 1);
 }
 
+void GenericPen::read_scan_time(const hid::PenLayout& layout, Bytes report,
+                                PenSample& sample) noexcept {
+  if (!layout.scan_time) return;
+  std::int64_t ticks = 0;
+  const hid::Range& range = layout.scan_time.reader.logical();
+  if (sample.state == PenState::kOutOfRange || !get(layout.scan_time.reader, report, ticks) ||
+      !range.contains(ticks)) {
+    scan_time_.leave();
+    return;
+  }
+  ScanTime::Reading reading;
+  reading.ticks = ticks - range.minimum;
+  reading.modulus = range.maximum - range.minimum + 1;
+  reading.tick_s = layout.scan_time.map.scale;
+  reading.time = sample.time;
+  reading.touching = in_contact(sample.state);
+  const ScanTime::Step step = scan_time_.push(reading);
+  if (step.jumped) sample.disturbances.add(Disturbance::kClockJump);
+  if (step.lost == 0 || layout.sequence) return;
+  sample.lost = step.lost;
+  sample.disturbances.add(Disturbance::kGap);
+}
+
 ReportClass GenericPen::decode(Bytes report, Timestamp time, PenOutput& out) noexcept {
   const hid::PenLayout* layout = layout_for(report);
   if (layout == nullptr) {
@@ -213,6 +236,7 @@ ReportClass GenericPen::decode(Bytes report, Timestamp time, PenOutput& out) noe
   sample.buttons = read_buttons(*layout, report);
   sample.lost = count_lost(*layout, report);
   if (sample.lost > 0) sample.disturbances.add(Disturbance::kGap);
+  read_scan_time(*layout, report, sample);
   set_position(*layout, report, sample);
   set_pressure(*layout, report, sample);
   set_tilt(*layout, report, sample);

@@ -7,6 +7,7 @@
 
 #include "drivers/devices/pen_output.hpp"
 #include "drivers/devices/report_class.hpp"
+#include "drivers/devices/scan_time.hpp"
 #include "drivers/hid/pen_layout.hpp"
 #include "input/base/time.hpp"
 
@@ -21,7 +22,8 @@ namespace limn {
 ///     Eraser                                the eraser touches
 ///
 /// Data Valid 0, and Null State, take the values away. Positions in mm from the descriptor's
-/// physical ranges. Reports that a sequence number shows missing are counted as `lost`.
+/// physical ranges. Reports that a sequence number, or else a Scan Time, shows missing are a gap
+/// and counted as `lost`; a Scan Time that disagrees with the reports' times is a clock jump.
 class GenericPen {
  public:
   GenericPen() = default;
@@ -41,9 +43,11 @@ class GenericPen {
   std::vector<hid::PenLayout> layouts_;  // those with a size first
   std::size_t sized_ = 0;
   std::optional<std::int64_t> last_sequence_;
+  ScanTime scan_time_;
 
   const hid::PenLayout* layout_for(Bytes report) const noexcept;
   std::uint32_t count_lost(const hid::PenLayout& layout, Bytes report) noexcept;
+  void read_scan_time(const hid::PenLayout& layout, Bytes report, PenSample& sample) noexcept;
 };
 
 }  // namespace limn

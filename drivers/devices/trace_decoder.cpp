@@ -1,7 +1,6 @@
 #include "drivers/devices/trace_decoder.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <string_view>
 #include <utility>
@@ -12,10 +11,6 @@
 
 namespace limn {
 namespace {
-
-std::uint32_t saturated_sum(std::uint32_t a, std::uint32_t b) noexcept {
-  return a + std::min(b, std::numeric_limits<std::uint32_t>::max() - a);
-}
 
 /// A device with several rows shows only by its reports which of them it speaks.
 void describe(const PenDecoder& decoder, TraceDeviceSummary& summary) {
@@ -54,7 +49,7 @@ struct TraceDecoder::Device {
   bool refused = false;               // salvaging: nothing can be decoded
   std::uint64_t repaired_before = 0;  // by decoders that a new description replaced
   Timestamp last_time{};
-  std::uint32_t lost = 0;  // to be told with the next sample
+  LossTracker losses;
 
   static constexpr std::size_t kMostStrings = 8;  // twice what any initialisation reads
 
@@ -73,6 +68,12 @@ std::uint64_t TraceSummary::repaired_transitions() const noexcept {
                          [](std::uint64_t sum, const TraceDeviceSummary& device) {
                            return sum + device.repaired_transitions;
                          });
+}
+
+StreamLosses TraceSummary::losses() const noexcept {
+  StreamLosses sum;
+  for (const TraceDeviceSummary& device : devices) sum.add(device.losses);
+  return sum;
 }
 
 TraceDecoder::TraceDecoder(std::unique_ptr<TraceReader> reader, TraceDecoderOptions options)
@@ -94,7 +95,7 @@ Expected<const PenSample*> TraceDecoder::next() {
   sample_ = pending_.front();
   sample_.time -= start_.value_or(Timestamp{});
   pending_ = pending_.subspan(1);
-  sample_.lost = saturated_sum(sample_.lost, std::exchange(pending_from_->lost, 0));
+  pending_from_->losses.complete(sample_, reader_->format() != TraceFormat::kStrokeCsv);
   ++samples_;
   return &sample_;
 }
@@ -135,6 +136,7 @@ TraceSummary TraceDecoder::summary() const {
   for (const auto& device : devices_) {
     summary.devices.push_back(device->summary);
     summary.devices.back().repaired_transitions = device->repaired_before + device->repaired_now();
+    summary.devices.back().losses = device->losses.losses();
     if (device->reports) describe(*device->reports, summary.devices.back());
   }
   return summary;
@@ -161,6 +163,7 @@ TraceDecoder::Step TraceDecoder::take(const DeviceDescribed& described) {
   device.summary.product = described.device->product;
   device.strings.clear();
   device.stale = true;
+  device.losses.described();
   leave(device);  // described anew, it was replugged
   return {};
 }
@@ -238,18 +241,19 @@ TraceDecoder::Step TraceDecoder::take(const PenSample& sample) {
 }
 
 TraceDecoder::Step TraceDecoder::take(const TraceNote& note) {
-  if (note.text == "gone") {
-    auto found = device(note.device);
-    if (!found) return tl::unexpected(std::move(found.error()));
-    leave(**found);
-    return {};
-  }
-  if (const auto loss = noted_loss(note.text)) return lose({note.device, loss->count});
-  if (auto string = noted_string(note.text)) {
-    auto found = device(note.device);
-    if (!found) return tl::unexpected(std::move(found.error()));
-    auto& strings = (*found)->strings;
-    if (strings.size() < Device::kMostStrings) strings.push_back(*std::move(string));
+  const auto loss = noted_loss(note.text);
+  auto string = noted_string(note.text);
+  if (!loss && !string && note.text != "gone") return {};
+  auto found = device(note.device);
+  if (!found) return tl::unexpected(std::move(found.error()));
+  Device& device = **found;
+  if (loss) {
+    device.losses.overrun(loss->count, loss->estimated);
+  } else if (string) {
+    if (device.strings.size() < Device::kMostStrings) device.strings.push_back(*std::move(string));
+  } else {
+    device.losses.gone();
+    leave(device);
   }
   return {};
 }
@@ -258,15 +262,10 @@ TraceDecoder::Step TraceDecoder::take(const TraceDamage& damage) {
   ++damaged_parts_;
   if (damage_.size() < TraceSummary::kDamageKept) damage_.push_back(damage.error);
   for (const LostReports& reports : damage.lost) {
-    if (auto known = lose(reports); !known) return known;
+    auto found = device(reports.device);
+    if (!found) return tl::unexpected(std::move(found.error()));
+    (*found)->losses.damage(reports.count, reports.time_went_back);
   }
-  return {};
-}
-
-TraceDecoder::Step TraceDecoder::lose(const LostReports& reports) {
-  auto found = device(reports.device);
-  if (!found) return tl::unexpected(std::move(found.error()));
-  (*found)->lost = saturated_sum((*found)->lost, reports.count);
   return {};
 }
 

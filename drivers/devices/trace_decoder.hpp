@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drivers/devices/evdev_pen_decoder.hpp"
+#include "drivers/devices/loss_tracker.hpp"
 #include "drivers/devices/pen_decoder.hpp"
 #include "drivers/devices/report_class.hpp"
 #include "input/base/error.hpp"
@@ -33,6 +34,7 @@ struct TraceDeviceSummary {
   std::uint64_t frames = 0;                                ///< evemu frames
   std::array<std::uint64_t, kReportClassCount> reports{};  ///< by ReportClass
   std::uint64_t undecodable_reports = 0;  ///< salvaged: of a device that limn knows nothing of
+  StreamLosses losses;
 
   std::uint64_t count(ReportClass kind_of_report) const noexcept {
     return reports[static_cast<std::size_t>(kind_of_report)];
@@ -48,6 +50,7 @@ struct TraceSummary {
 
   static constexpr std::size_t kDamageKept = 16;
   std::uint64_t repaired_transitions() const noexcept;
+  StreamLosses losses() const noexcept;
 };
 
 struct TraceDecoderOptions {
@@ -57,9 +60,10 @@ struct TraceDecoderOptions {
 
 /// Trace -> PenSamples of all its devices, in file order, pulled one by one. Sample times are the
 /// file's minus that of its first report, frame or sample. What the trace tells of missing reports
-/// (TraceDamage, "lost N" notes) is added to `lost` of their device's next sample; a "gone" note
-/// takes what is in range out of it; "string" notes before its first report are what the device
-/// answered when it was initialised, and its decoder goes by them. Constant memory.
+/// (TraceDamage, "lost N" notes) and of replugs is told with their device's next sample, and so are
+/// gaps and clocks that jump (LossTracker); a "gone" note takes what is in range out of it; "string"
+/// notes before its first report are what the device answered when it was initialised, and its
+/// decoder goes by them. Constant memory.
 ///
 /// A pen that leaves silently (PenDecoder) leaves before its device's next report, or at the end,
 /// or as soon as a reader that waits says that it was silent for so long (next_until): what each
@@ -122,7 +126,6 @@ class TraceDecoder {
   Step take(const TraceNote& note);
   Step take(const TraceDamage& damage);
 
-  Step lose(const LostReports& reports);
   void leave(Device& device) noexcept;
   Expected<Device*> device(DeviceIndex index);
   Step prepare(Device& device);

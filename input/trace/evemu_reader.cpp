@@ -149,8 +149,7 @@ Expected<void> EvemuReader::take_event(std::string_view rest, bool terminated) {
     return {};
   }
   if (device_.last && *time < *device_.last) {
-    return damaged("the time " + std::string(word) + " is before that of the event before it",
-                   ErrorCode::kOutOfRange);
+    return went_back(word, "event");
   }
   device_.last = time;
   return add_to_frame({*time, *type, *code, *value});

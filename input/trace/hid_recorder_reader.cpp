@@ -179,8 +179,7 @@ Expected<void> HidRecorderReader::take_event(std::string_view rest) {
     if (auto selected = select(0); !selected) return selected;
   }
   if (device_->last && *time < *device_->last) {
-    return damaged("the time " + std::string(word) + " is before that of the report before it",
-                   ErrorCode::kOutOfRange);
+    return went_back(word, "report");
   }
   device_->last = time;
   if (!device_->announced) announce();

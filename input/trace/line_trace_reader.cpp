@@ -42,6 +42,7 @@ Expected<void> LineTraceReader::step() {
   if (!line) return tl::unexpected(line.error());
   finished_ = !line->has_value();
   if (!finished_) number_ = (*line)->number;
+  went_back_ = false;
   auto taken = finished_ ? finish() : take_checked(**line);
   if (!taken) {
     if (!salvage_) return taken;
@@ -79,6 +80,13 @@ tl::unexpected<Error> LineTraceReader::damaged(std::string what, ErrorCode code)
   return fail(code, line_place(number_), std::move(what), std::string(kRemedy));
 }
 
+tl::unexpected<Error> LineTraceReader::went_back(std::string_view word, std::string_view what) {
+  went_back_ = true;
+  return damaged("the time " + std::string(word) + " is before that of the " + std::string(what) +
+                     " before it",
+                 ErrorCode::kOutOfRange);
+}
+
 tl::unexpected<Error> LineTraceReader::cut_short() const {
   return fail(ErrorCode::kSyntax, line_place(number_),
               "the last line is cut short: it has no line end",
@@ -98,8 +106,9 @@ void LineTraceReader::lose_report(DeviceIndex device) {
   });
   if (known != lost.end()) {
     ++known->count;
+    known->time_went_back |= went_back_;
   } else if (lost.size() < kMaxTraceDevices) {
-    lost.push_back({device, 1});
+    lost.push_back({device, 1, went_back_});
   }
 }
 

@@ -46,6 +46,9 @@ class LineTraceReader : public TraceReader {
   /// Damage in the line in hand.
   tl::unexpected<Error> damaged(std::string what, ErrorCode code = ErrorCode::kSyntax) const;
 
+  /// The line in hand is damage because its time `word` is before that of the `what` before it.
+  tl::unexpected<Error> went_back(std::string_view word, std::string_view what);
+
   /// The last line has no line end and cannot be known to be whole.
   tl::unexpected<Error> cut_short() const;
 
@@ -74,6 +77,7 @@ class LineTraceReader : public TraceReader {
   std::vector<PlacedEvent> queue_;  // emptied before the next line, so it stays small
   std::size_t given_ = 0;           // of queue_
   std::optional<Damage> damage_;    // skipped since the last event
+  bool went_back_ = false;          // the time of the line in hand
   std::optional<Error> failure_;
 };
 

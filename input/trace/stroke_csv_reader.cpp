@@ -162,8 +162,7 @@ Expected<void> StrokeCsvReader::take_row(std::string_view text, bool terminated)
   if (!terminated && widths_.lacks_digits(last_word)) return cut_short();
   widths_.take(last_word);
   if (last_ && *time < *last_) {
-    return damaged("the time " + text::quoted(word) + " is before that of the row before it",
-                   ErrorCode::kOutOfRange);
+    return went_back(text::quoted(word), "row");
   }
   last_ = time;
   columns_ = fields.count;

@@ -110,6 +110,7 @@ struct TraceNote {
 struct LostReports {
   DeviceIndex device = 0;
   std::uint32_t count = 0;
+  bool time_went_back = false;  ///< one of them was earlier than the one before it
 };
 
 /// A part of the file that TraceOptions::salvage skipped: everything damaged between the event

@@ -96,8 +96,7 @@ Expected<void> UsbhidDumpReader::take_header(std::string_view text) {
   if (!found) return tl::unexpected(found.error());
   std::optional<Timestamp>& last = (*found)->last;
   if (is_report && last && *time < *last) {
-    return damaged("the time " + std::string(word) + " is before that of the report before it",
-                   ErrorCode::kOutOfRange);
+    return went_back(word, "report");
   }
   if (is_report) last = time;
   record_.kind = is_report ? RecordKind::kReport : RecordKind::kDescriptor;

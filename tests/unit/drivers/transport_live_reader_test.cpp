@@ -349,6 +349,25 @@ TEST(LiveReader, AllocatesNothingForAReport) {
   EXPECT_EQ(guard.count(), 0u) << "in the caller's thread";
 }
 
+TEST(LiveReader, AllocatesNothingFromAReportToItsSample) {
+  TraceDevice graphire;
+  graphire.vendor = 0x056A;
+  graphire.product = 0x0013;
+  std::unique_ptr<Transport> transport;
+  FarEnd device(graphire, transport);
+  TraceDecoder decoder(start(std::move(transport)));
+  const std::vector<std::uint8_t> report = {2, 0x90, 0x40, 0x1f, 0x20, 0x03, 0, 0};
+  ASSERT_TRUE(device.try_send(report));
+  ASSERT_NE(*decoder.next(), nullptr);
+  const AllocGuard guard;
+  int samples = 0;
+  for (int i = 0; i < 1000; ++i) {
+    if (device.try_send(report) && *decoder.next() != nullptr) ++samples;
+  }
+  EXPECT_EQ(guard.count(), 0u) << "in the caller's thread";
+  EXPECT_EQ(samples, 1000);
+}
+
 class CountingSink final : public TransportSink {
  public:
   void report(Timestamp, std::span<const std::uint8_t>) noexcept override { ++reports; }
