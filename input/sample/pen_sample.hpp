@@ -48,6 +48,7 @@ class PenAxes {
     bits_ = static_cast<std::uint16_t>(bits_ & ~static_cast<std::uint16_t>(axis));
   }
   constexpr bool empty() const noexcept { return bits_ == 0; }
+  constexpr std::uint16_t bits() const noexcept { return bits_; }
   friend constexpr bool operator==(PenAxes, PenAxes) = default;
 
  private:
