@@ -48,6 +48,7 @@ void add_from_sysfs(ListedDevice& listed) {
   std::ifstream uevent(folder + "uevent");
   for (std::string line; std::getline(uevent, line);) {
     const auto value = [&line](std::string_view key) { return line.substr(key.size()); };
+    if (line.starts_with("DRIVER=")) listed.driver = value("DRIVER=");
     if (line.starts_with("HID_NAME=")) listed.device.name = value("HID_NAME=");
     if (line.starts_with("HID_PHYS=")) listed.device.physical_path = value("HID_PHYS=");
     unsigned bus = 0;

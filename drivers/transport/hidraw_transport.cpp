@@ -7,11 +7,11 @@
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <string>
 #include <utility>
 
 #include "drivers/transport/file_handle.hpp"
+#include "drivers/transport/node_error.hpp"
 #include "drivers/transport/paced_reader.hpp"
 
 namespace limn {
@@ -45,17 +45,6 @@ class MessageTransport final : public Transport {
   std::array<std::uint8_t, kMaxReportBytes> buffer_;
 };
 
-tl::unexpected<Error> io_error(const std::string& node, int error) {
-  const std::string what = std::string("cannot be opened: ") + std::strerror(error);
-  std::string remedy = "check the name with 'limn devices'";
-  if (error == EACCES || error == EPERM) {
-    remedy = "install limn's udev rules and plug the device in again, or see 'limn doctor'";
-  } else if (error == ENODEV || error == ENOENT || error == ENXIO) {
-    remedy = "plug the device in and see 'limn devices'";
-  }
-  return fail(ErrorCode::kIo, node, what, remedy);
-}
-
 /// A text that an ioctl of hidraw gives, empty where it gives none.
 std::string text_of(int file, unsigned long request) {
   std::array<char, 256> text{};
@@ -66,7 +55,7 @@ std::string text_of(int file, unsigned long request) {
 
 Expected<std::unique_ptr<Transport>> open_hidraw(const std::string& node) {
   FileHandle file(::open(node.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  if (!file) return io_error(node, errno);
+  if (!file) return node_error(node, "opened", errno);
   hidraw_devinfo info{};
   int size = 0;
   if (::ioctl(file.get(), HIDIOCGRAWINFO, &info) < 0 ||
@@ -74,7 +63,7 @@ Expected<std::unique_ptr<Transport>> open_hidraw(const std::string& node) {
     if (errno == ENOTTY || errno == EINVAL) {
       return fail(ErrorCode::kIo, node, "is no hidraw node", "give one that 'limn devices' names");
     }
-    return io_error(node, errno);
+    return node_error(node, "opened", errno);
   }
   if (size < 0 || size > HID_MAX_DESCRIPTOR_SIZE) {
     return fail(ErrorCode::kLimit, node,
@@ -83,7 +72,7 @@ Expected<std::unique_ptr<Transport>> open_hidraw(const std::string& node) {
   }
   hidraw_report_descriptor descriptor{};
   descriptor.size = static_cast<__u32>(size);
-  if (::ioctl(file.get(), HIDIOCGRDESC, &descriptor) < 0) return io_error(node, errno);
+  if (::ioctl(file.get(), HIDIOCGRDESC, &descriptor) < 0) return node_error(node, "opened", errno);
 
   TraceDevice device;
   device.name = text_of(file.get(), HIDIOCGRAWNAME(256));

@@ -29,9 +29,10 @@ const std::vector<Layer>& layers() {
 
       {"drivers/hid", {"input/base", "input/sample"}, {}},
       {"drivers/devices", {"input", "drivers/hid"}, {}},
-      // What a pen must be asked when it is opened is data of its tables.
+      // What a pen must be asked when it is opened is data of its tables; how long a USB transfer
+      // must be is in its report descriptor.
       {"drivers/transport",
-       {"input", "drivers/devices"},
+       {"input", "drivers/devices", "drivers/hid"},
        {"libusb-1.0/", "hidapi/", "linux/", "libevdev/", "libudev.h", "posix", "sys/"}},
 
       {"modeler/base", {"input/base"}, {"Eigen/"}},
@@ -75,7 +76,7 @@ const std::vector<Layer>& layers() {
       {"tests",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
        {"gtest/", "gmock/", "benchmark/", "sanitizer/", "Eigen/", "nlohmann/", "cairo",
-        "opencascade", "sisl.h", "posix", "linux/", "sys/"}},
+        "opencascade", "sisl.h", "posix", "dlfcn.h", "linux/", "sys/"}},
   };
   return table;
 }
