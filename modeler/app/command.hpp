@@ -5,6 +5,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "drivers/transport/device_listing.hpp"
 #include "input/base/error.hpp"
 #include "modeler/app/output_format.hpp"
 
@@ -67,14 +68,21 @@ struct DoctorArguments {
   OutputFormat format = OutputFormat::kText;
 };
 
+/// Which devices to open, and how.
+struct LiveArguments {
+  std::string device;  ///< VID:PID[:N] or a node; empty for all pens
+  Backend backend = Backend::kHidraw;
+  bool initialize = true;
+};
+
 struct MonitorArguments {
-  std::string device;  ///< as of RecordArguments
+  LiveArguments live;
   double seconds = 0;  ///< 0: until a signal
   OutputFormat format = OutputFormat::kText;
 };
 
 struct RecordArguments {
-  std::string device;  ///< VID:PID[:N] or a node; empty for all pens
+  LiveArguments live;
   std::string output;
   double seconds = 0;  ///< 0: until a signal
 };

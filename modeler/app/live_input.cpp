@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <atomic>
 #include <charconv>
+#include <cstdio>
 #include <iterator>
 #include <optional>
 #include <utility>
 
 #include "drivers/devices/pen_decoder.hpp"
+#include "drivers/devices/pen_initialization.hpp"
 #include "drivers/devices/pen_spec.hpp"
-#include "drivers/transport/hidraw_transport.hpp"
+#include "drivers/transport/open_device.hpp"
 #include "drivers/transport/udev_hotplug.hpp"
+#include "drivers/transport/usb_transport.hpp"
 #include "modeler/app/option_values.hpp"
 
 namespace limn::app {
@@ -46,13 +49,25 @@ tl::unexpected<Failure> no_device(ErrorCode code, std::string what, std::string 
   return tl::unexpected(Failure{"", Error{code, "", std::move(what), std::move(remedy)}});
 }
 
+/// Opens a device; where it cannot be set up, says so and reads it as it is.
+Expected<std::unique_ptr<Transport>> open_one(const ListedDevice& listed, bool initialize) {
+  auto opened = open_device(listed, initialize);
+  if (!opened) return tl::unexpected(std::move(opened.error()));
+  if (const auto& trouble = opened->trouble) {
+    std::fprintf(stderr, "limn: %s: is read as it is, not set up: %s%s%s; %s\n",
+                 listed.node.c_str(), trouble->at.c_str(), trouble->at.empty() ? "" : " ",
+                 trouble->what.c_str(), trouble->remedy.c_str());
+  }
+  return std::move(opened->transport);
+}
+
 /// Opens what can be opened; where nothing can, the first reason.
 tl::expected<std::vector<std::unique_ptr<Transport>>, Failure> open_all(
-    const std::vector<std::string>& nodes) {
+    const std::vector<ListedDevice>& devices, bool initialize) {
   std::vector<std::unique_ptr<Transport>> opened;
   std::optional<Error> first;
-  for (const std::string& node : nodes) {
-    auto transport = open_hidraw(node);
+  for (const ListedDevice& listed : devices) {
+    auto transport = open_one(listed, initialize);
     if (transport) {
       opened.push_back(*std::move(transport));
     } else if (!first) {
@@ -61,6 +76,22 @@ tl::expected<std::vector<std::unique_ptr<Transport>>, Failure> open_all(
   }
   if (opened.empty() && first) return tl::unexpected(Failure{"", *std::move(first)});
   return opened;
+}
+
+/// Opens what lies behind a node, once: what goes away stays away.
+tl::expected<std::unique_ptr<LiveReader>, Failure> open_node(
+    const std::string& node, const LiveArguments& live, const std::vector<ListedDevice>& listed) {
+  std::vector<ListedDevice> chosen;
+  std::copy_if(listed.begin(), listed.end(), std::back_inserter(chosen),
+               [&node](const ListedDevice& one) { return one.node == node; });
+  if (chosen.empty()) {  // let the backend say what is wrong with it
+    chosen.emplace_back();
+    chosen.back().node = node;
+    chosen.back().backend = live.backend;
+  }
+  auto opened = open_all(chosen, live.initialize);
+  if (!opened) return tl::unexpected(std::move(opened.error()));
+  return in_file("", LiveReader::start(*std::move(opened)));
 }
 
 std::atomic<LiveReader*> stopped_by_signal = nullptr;
@@ -84,28 +115,32 @@ void handle(int signal, void (*handler)(int)) {
 std::string pen_kind(const ListedDevice& listed) {
   const auto decoder = PenDecoder::make(listed.device.vendor, listed.device.product,
                                         listed.device.report_descriptor);
-  if (!decoder || !decoder->has_pen()) return {};
+  if (!decoder || !decoder->has_pen()) {
+    const PenInitialization* sequence =
+        find_pen_initialization(listed.device.vendor, listed.device.product);
+    const bool becomes_one =
+        sequence != nullptr && sequence->interface_number == listed.interface_number;
+    return becomes_one ? std::string(name(sequence->family)) : std::string();
+  }
   return decoder->spec() != nullptr ? std::string(name(decoder->spec()->family)) : "HID pen";
 }
 
-tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const std::string& device) {
-  if (device.find('/') != std::string::npos) {
-    auto transport = open_hidraw(device);
-    if (!transport) return tl::unexpected(Failure{"", std::move(transport.error())});
-    std::vector<std::unique_ptr<Transport>> one;
-    one.push_back(*std::move(transport));
-    return in_file("", LiveReader::start(std::move(one)));
-  }
+tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArguments& live) {
+  const std::string& device = live.device;
+  const bool initialize = live.initialize;
+  const bool by_node = device.find('/') != std::string::npos;
   std::optional<DeviceId> id;
-  if (!device.empty()) {
+  if (!device.empty() && !by_node) {
     id = parse_device_id(device);
     if (!id) {
       return usage_error("'" + device + "' is no device",
                          "give VID:PID, VID:PID:N or a node, as 'limn devices' shows them");
     }
   }
-  auto listed = in_file("", list_hid_devices());
-  if (!listed) return tl::unexpected(std::move(listed.error()));
+  auto listed = in_file("", list_devices_of(live.backend));
+  if (!listed && !by_node) return tl::unexpected(std::move(listed.error()));
+  if (!listed) listed.emplace();
+  if (by_node) return open_node(device, live, *listed);
   const auto wanted = [id](const ListedDevice& one) {
     return id ? one.device.vendor == id->vendor && one.device.product == id->product
               : !pen_kind(one).empty();
@@ -118,23 +153,25 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const std::st
     chosen = *id->ordinal < found ? std::vector{chosen[*id->ordinal]} : std::vector<ListedDevice>();
     if (!chosen.empty()) interface_number = chosen.front().interface_number;
   }
-  std::vector<std::string> nodes;
-  for (const ListedDevice& one : chosen) nodes.push_back(one.node);
-  if (nodes.empty()) {
+  if (chosen.empty()) {
     return no_device(ErrorCode::kMissing,
                      id ? "no device " + device + " is here" : "no pen is here",
                      "plug it in and see 'limn devices'");
   }
-  auto opened = open_all(nodes);
+  auto opened = open_all(chosen, initialize);
   if (!opened) return tl::unexpected(std::move(opened.error()));
   // Without udev what goes away stays away; everything else still works.
   DeviceWatch watch;
+  if (live.backend == Backend::kUsb) {
+    watch.subsystem = "usb";
+    watch.list = list_usb_devices;
+  }
   watch.wanted = [wanted, interface_number](const ListedDevice& one) {
     return wanted(one) && (!interface_number || one.interface_number == *interface_number);
   };
-  watch.open = [](const ListedDevice& one) {
-    auto opened = open_hidraw(one.node);
-    return opened ? *std::move(opened) : std::unique_ptr<Transport>();
+  watch.open = [initialize](const ListedDevice& one) {
+    auto transport = open_one(one, initialize);
+    return transport ? *std::move(transport) : std::unique_ptr<Transport>();
   };
   auto hotplug = watch_devices(std::move(watch));
   return in_file("",

@@ -15,8 +15,9 @@ namespace limn::app {
 std::string pen_kind(const ListedDevice& listed);
 
 /// Opens the devices that DEVICE names (see limn(1)), all pens where it is empty, and watches for
-/// them where they may come later. Failure: there is none, or none that may be read.
-tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const std::string& device);
+/// them where they may come later. A device that should be set up and cannot be gives a line on
+/// standard error. Failure: there is none, or none that may be read.
+tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArguments& live);
 
 /// Lets SIGINT and SIGTERM stop the reader while this lives; a second one ends the program. For one
 /// reader at a time.

@@ -74,12 +74,21 @@ void add_trace(CLI::App& command, TraceArguments& trace) {
                    "Skip what is damaged and say how much, instead of stopping there");
 }
 
-void add_device(CLI::App& command, std::string& device) {
+void add_live(CLI::App& command, LiveArguments& live) {
   command
-      .add_option("DEVICE", device,
+      .add_option("DEVICE", live.device,
                   "VID:PID, VID:PID:N (the N-th of them from 0) or a node, as limn devices shows "
                   "them; all pens unless given")
       ->type_name("");
+  add_value(
+      command, "--backend",
+      [&live](const std::string& text) { return parse_backend(text, live.backend); },
+      "How to read them: hidraw, or usb, which takes them from Linux's drivers")
+      ->type_name("BACKEND")
+      ->default_str("hidraw");
+  command.add_flag(
+      "--no-init", [&live](std::int64_t) { live.initialize = false; },
+      "Read devices as they are, without the requests that set them up");
 }
 
 void add_seconds(CLI::App& command, double& seconds) {
@@ -133,7 +142,7 @@ int run(int argc, char** argv) {
   MonitorArguments monitor;
   CLI::App* monitor_command =
       app.add_subcommand("monitor", "Watch devices: values, rate, jitter, lost reports, latency");
-  add_device(*monitor_command, monitor.device);
+  add_live(*monitor_command, monitor.live);
   add_seconds(*monitor_command, monitor.seconds);
   add_format(*monitor_command, monitor.format);
   monitor_command->callback([&] { outcome = run_monitor(monitor); });
@@ -141,7 +150,7 @@ int run(int argc, char** argv) {
   RecordArguments record;
   CLI::App* record_command =
       app.add_subcommand("record", "Record what devices send, as a hid-recorder file");
-  add_device(*record_command, record.device);
+  add_live(*record_command, record.live);
   record_command
       ->add_option("-o,--output", record.output,
                    "The file to create; - is standard output. It grows while recording, so a crash "

@@ -149,7 +149,7 @@ std::string describe(const Watched& device) {
 }  // namespace
 
 Outcome run_monitor(const MonitorArguments& arguments) {
-  auto live = open_live_input(arguments.device);
+  auto live = open_live_input(arguments.live);
   if (!live) return tl::unexpected(std::move(live.error()));
   const StopOnSignal stop(**live);
   const bool redraws = ::isatty(STDOUT_FILENO) != 0 && arguments.format == OutputFormat::kText;

@@ -44,6 +44,17 @@ std::string parse_format(std::string_view text, OutputFormat& format) {
   return "there is no format " + quoted(text) + "; " + suggest(text, kFormatNames);
 }
 
+std::string parse_backend(std::string_view text, Backend& backend) {
+  constexpr std::array<std::string_view, 2> kNames = {"hidraw", "usb"};
+  constexpr std::array<Backend, 2> kBackends = {Backend::kHidraw, Backend::kUsb};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (text != kNames[i]) continue;
+    backend = kBackends[i];
+    return {};
+  }
+  return "there is no backend " + quoted(text) + "; " + suggest(text, kNames);
+}
+
 std::string parse_length(std::string_view text, double& length_mm) {
   if (read_all(text, length_mm) && std::isfinite(length_mm) && length_mm > 0) return {};
   return quoted(text) + " is no length above 0 mm, such as 0.1";

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "drivers/transport/device_listing.hpp"
 #include "modeler/app/output_format.hpp"
 
 namespace limn::app {
@@ -16,6 +17,9 @@ std::string parse_id(std::string_view text, std::uint16_t& vendor, std::uint16_t
 
 /// "text", "json", "jsonl" or "csv".
 std::string parse_format(std::string_view text, OutputFormat& format);
+
+/// "hidraw" or "usb".
+std::string parse_backend(std::string_view text, Backend& backend);
 
 /// A finite length above 0, in mm.
 std::string parse_length(std::string_view text, double& length_mm);

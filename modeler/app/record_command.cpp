@@ -81,7 +81,7 @@ std::string summarise(const Counts& counts, Timestamp duration) {
 }  // namespace
 
 Outcome run_record(const RecordArguments& arguments) {
-  auto reader = open_live_input(arguments.device);
+  auto reader = open_live_input(arguments.live);
   if (!reader) return tl::unexpected(std::move(reader.error()));
   auto file = in_file(arguments.output, RecordingFile::create(arguments.output));
   if (!file) return tl::unexpected(std::move(file.error()));
