@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdio>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "drivers/transport/device_listing.hpp"
 #include "drivers/transport/hidraw_transport.hpp"
 #include "drivers/transport/live_reader.hpp"
+#include "drivers/transport/udev_hotplug.hpp"
 #include "input/stroke/stroke_sampler.hpp"
 
 namespace {
@@ -72,7 +74,13 @@ int main(int argc, char** argv) {
   if (!pens) return fail(pens.error());
   std::unique_ptr<limn::Hotplug> hotplug;
   if (argc == 1) {
-    if (auto watched = limn::watch_hid_devices(is_pen)) hotplug = *std::move(watched);
+    limn::DeviceWatch watch;
+    watch.wanted = is_pen;
+    watch.open = [](const limn::ListedDevice& listed) {
+      auto transport = limn::open_hidraw(listed.node);
+      return transport ? *std::move(transport) : nullptr;
+    };
+    if (auto watched = limn::watch_devices(std::move(watch))) hotplug = *std::move(watched);
   }
   auto reader = limn::LiveReader::start(*std::move(pens), std::move(hotplug));
   if (!reader) return fail(reader.error());
