@@ -14,29 +14,12 @@
 #include <span>
 
 #include "input/stroke/stroke_sampler.hpp"
+#include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/pen_laws.hpp"
 
 namespace {
 
 using namespace limn;
-
-class Input {
- public:
-  Input(const std::uint8_t* data, std::size_t size) : rest_(data, size) {}
-  bool empty() const { return rest_.empty(); }
-  std::uint8_t byte() {
-    const auto taken = take(1);
-    return taken.empty() ? std::uint8_t{0} : taken[0];
-  }
-  std::span<const std::uint8_t> take(std::size_t count) {
-    const auto taken = rest_.first(std::min(count, rest_.size()));
-    rest_ = rest_.subspan(taken.size());
-    return taken;
-  }
-
- private:
-  std::span<const std::uint8_t> rest_;
-};
 
 PenSpec row_of(PenFamily family, std::size_t choice) {
   const auto of_family = [family](const PenSpec& spec) { return spec.family == family; };
@@ -51,7 +34,7 @@ PenSpec row_of(PenFamily family, std::size_t choice) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Input input(data, size);
+  fuzz::Input input(data, size);
   const bool has_descriptor = input.byte() != 0;
   const unsigned family = input.byte() % (kPenFamilyCount + 1U);
   const bool stranger = family == kPenFamilyCount;
@@ -59,8 +42,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const PenSpec spec = stranger ? PenSpec{} : row_of(static_cast<PenFamily>(family), choice);
   std::span<const std::uint8_t> descriptor;
   if (has_descriptor) {
-    const std::size_t length_low = input.byte();
-    descriptor = input.take(length_low | static_cast<std::size_t>(input.byte()) << 8);
+    const std::size_t length = input.word();
+    descriptor = input.take(length);
   }
   PenIdentity identity;
   identity.vendor = spec.vendor;
