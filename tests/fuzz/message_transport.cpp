@@ -1,11 +1,13 @@
-// Any messages from a transport, into a decoder of every row of the tables.
+// Any messages from a transport, into a decoder of any row of the tables.
 //
+//   u16       number of the row, modulo theirs
 //   messages: u16 length, bytes (repeated until it is reached); 0: the device goes away
 
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "drivers/devices/pen_decoder.hpp"
@@ -17,35 +19,25 @@ namespace {
 
 using namespace limn;
 
-struct Decoded {
-  PenDecoder decoder;
-  fuzz::PenLaws laws;
-};
-
-std::vector<Decoded> decoders_of_all_rows() {
-  std::vector<Decoded> all;
-  for (const PenSpec& row : pen_specs()) {
-    PenIdentity identity;
-    identity.vendor = row.vendor;
-    identity.product = row.product;
-    identity.firmware = row.firmware;
-    identity.product_name = row.product_name;
-    identity.descriptor_bytes = row.descriptor_bytes;
-    auto decoder = PenDecoder::make(identity, {});
-    fuzz::require(decoder.has_value(), "a device of the tables needs no descriptor");
-    all.push_back({std::move(*decoder), {}});
-  }
-  return all;
+PenDecoder decoder_of(const PenSpec& row) {
+  PenIdentity identity;
+  identity.vendor = row.vendor;
+  identity.product = row.product;
+  identity.firmware = row.firmware;
+  identity.product_name = row.product_name;
+  identity.descriptor_bytes = row.descriptor_bytes;
+  auto decoder = PenDecoder::make(identity, {});
+  fuzz::require(decoder.has_value(), "a device of the tables needs no descriptor");
+  return std::move(*decoder);
 }
 
 class Sink final : public TransportSink {
  public:
+  explicit Sink(const PenSpec& row) : decoder(decoder_of(row)) {}
   void report(Timestamp time, std::span<const std::uint8_t> bytes) noexcept override {
     ++reports;
     last.assign(bytes.begin(), bytes.end());
-    for (Decoded& decoded : decoders) {
-      decoded.laws.check(decoded.decoder.decode(Report{0, time, bytes}).samples);
-    }
+    laws.check(decoder.decode(Report{0, time, bytes}).samples);
   }
   void frame(Timestamp, std::span<const EvdevEvent>) noexcept override {
     fuzz::require(false, "messages are no frames");
@@ -53,7 +45,8 @@ class Sink final : public TransportSink {
   void lost(std::uint32_t, bool) noexcept override {
     fuzz::require(false, "the socket waits, and drops nothing");
   }
-  std::vector<Decoded> decoders = decoders_of_all_rows();
+  PenDecoder decoder;
+  fuzz::PenLaws laws;
   int reports = 0;
   std::vector<std::uint8_t> last;
 };
@@ -65,7 +58,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends) != 0) return 0;
   const auto transport = open_messages(ends[1], TraceDevice{});
   fuzz::Input input(data, size);
-  Sink sink;
+  Sink sink(pen_specs()[input.word() % pen_specs().size()]);
   std::vector<std::uint8_t> message;
   bool away = false;
   constexpr int kMostMessages = 64;
@@ -86,7 +79,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   ::close(ends[0]);
   fuzz::require(transport->drain(sink) == Transport::State::kGone, "it sees the far end close");
-  const Timestamp end = Timestamp::max();
-  for (Decoded& decoded : sink.decoders) decoded.laws.check(decoded.decoder.disconnect(0, end));
+  sink.laws.check(sink.decoder.disconnect(0, Timestamp::max()));
   return 0;
 }
