@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "drivers/transport/paced_reader.hpp"
 #include "input/trace/noted_string.hpp"
 
 namespace limn {
 
-PenSetup set_up_pen(const PenInitialization& sequence, DeviceControl& control) {
+PenSetup set_up_pen(const PenInitialization& sequence, DeviceControl& control,
+                    WaitingClock& clock) {
   PenSetup setup{PenInitializer(sequence), {}, {}};
-  WaitingClock& clock = monotonic_clock();
   const Timestamp latest = clock.now() + kLongestSetup;
   while (const PenInitStep* step = setup.initializer.next()) {
     if (clock.now() > latest) {

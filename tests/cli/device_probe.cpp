@@ -1,10 +1,11 @@
 // What the command line does not show of devices, for tests that run it inside umockdev:
 //
-//     drain           reads the first USB device until it is gone; says how often that called
-//                     operator new (libusb's own callocs, one a transfer submitted, do not count)
-//     feature [NODE]  asks it, or the device behind a hidraw node, for feature report 7
-//     hotplug TEXT    plugs in the hidraw device that the file TEXT describes, whose opening waits
-//                     until a report of another device has come through
+//     drain              reads the first USB device until it is gone; says how often that called
+//                        operator new (libusb's callocs, one a transfer submitted, do not count)
+//     feature [NODE]     asks it, or the device behind a hidraw node, for feature report 7
+//     hotplug TEXT PATH  plugs in the devices that the file TEXT describes, tells that the one at
+//                        PATH in sysfs has come; its opening waits until a report of another device
+//                        has come through
 
 #include <dlfcn.h>
 #include <poll.h>
@@ -106,14 +107,18 @@ std::unique_ptr<Transport> socket_device(const std::string& name, int& far_end) 
   return open_messages(ends[1], std::move(device));
 }
 
-int hotplug(const std::string& text) {
+int hotplug(const std::string& text, const std::string& path) {
   const Testbed testbed;
   std::promise<void> opening;
   std::promise<void> report_came;
   int far_end = -1;
   int other_end = -1;
   DeviceWatch watch;
-  watch.wanted = [](const ListedDevice& listed) { return listed.node == "/dev/hidraw0"; };
+  if (path.find("hidraw") == std::string::npos) {
+    watch.subsystem = "usb";
+    watch.list = list_usb_devices;
+  }
+  watch.wanted = [](const ListedDevice&) { return true; };
   watch.open = [&, opened = false](const ListedDevice& listed) mutable {
     // umockdev tells that it has come, too, perhaps before all of it is there.
     if (std::exchange(opened, true)) return std::unique_ptr<Transport>();
@@ -127,8 +132,7 @@ int hotplug(const std::string& text) {
   devices.push_back(socket_device("first", far_end));
   const auto reader = LiveReader::start(std::move(devices), *std::move(hotplug));
   if (!reader || !testbed.add(text)) return kFailed;
-  const std::string path = text.substr(3, text.find('\n') - 3);  // after "P: "
-  if (!testbed.tell("/sys" + path)) return kFailed;
+  if (!testbed.tell(path)) return kFailed;
   opening.get_future().wait();
   if (::write(far_end, "r", 1) != 1) return kFailed;
   for (int events = 0; events < 3; ++events) {
@@ -147,7 +151,7 @@ int hotplug(const std::string& text) {
 
 int run(int argc, char** argv) {
   const std::string_view what = argc > 1 ? argv[1] : "";
-  if (what == "hotplug" && argc > 2) return hotplug(read_file(argv[2]));
+  if (what == "hotplug" && argc > 3) return hotplug(read_file(argv[2]), argv[3]);
   if (what == "feature" && argc > 2) {
     const auto control = open_hidraw_control(argv[2]);
     return control ? ask_feature(**control) : refuse(control.error());

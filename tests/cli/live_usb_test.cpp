@@ -325,20 +325,19 @@ TEST_F(LiveUsb, FeatureReportsAreAskedForOnBothWays) {
 
 TEST_F(LiveUsb, OpeningADeviceThatComesHoldsUpNoOther) {
   // Were it opened in the reading thread, the probe would wait for ever.
-  const TempFolder folder;
-  const std::string text =
-      "P: /devices/virtual/0003:1209:0001.0001/hidraw/hidraw0\nN: hidraw0\n"
-      "E: DEVNAME=/dev/hidraw0\nE: MAJOR=243\nE: MINOR=0\nE: SUBSYSTEM=hidraw\n"
-      "L: device=../../../0003:1209:0001.0001\n\n"
-      "P: /devices/virtual/0003:1209:0001.0001\nE: DRIVER=hid-generic\n"
-      "E: HID_ID=0003:00001209:00000001\nE: HID_NAME=Small Pen\nE: HID_PHYS=virtual\n"
-      "E: HID_UNIQ=\nE: SUBSYSTEM=hid\n\n";
-  const std::string file = folder.write("later.umockdev", text).string();
-  const CommandRun run = run_shell(
-      "export ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0; timeout 60 umockdev-wrapper " +
-      std::string(LIMN_DEVICE_PROBE) + " hotplug " + file);
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(run.out, "described first\nreport while opening\ndescribed Small Pen\n");
+  SimulatedUsb tablet;
+  make_small_pen(tablet);
+  tablet.on_hidraw = true;
+  const std::string file = tablet.write_description();
+  const std::string interface = "/sys/devices/pci0000:00/0000:00:14.0/usb1/1-1/1-1:1.0";
+  for (const std::string& device : {interface + "/0003:1209:0001.0001/hidraw/hidraw0", interface}) {
+    const CommandRun run = run_shell(
+        "export ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0; timeout 60 "
+        "umockdev-wrapper " +
+        std::string(LIMN_DEVICE_PROBE) + " hotplug " + file + " " + device);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.out, "described first\nreport while opening\ndescribed Limn Small Pen\n");
+  }
 }
 
 /// kReportV2 in umockdev's escapes: ^A is 1, ^@ 0, other bytes as they are.

@@ -184,7 +184,7 @@ CommandRun SimulatedUsb::run(const std::string& program, const std::string& word
   put(head, 262144, 4);
   put(head, 220, 4);  // LINKTYPE_USB_LINUX_MMAPPED
   const std::string capture = folder_.write("usb.pcap", head + packets_).string();
-  const std::string device = folder_.write("usb.umockdev", device_text()).string();
+  const std::string device = write_description();
   // umockdev's node is a plain file, which epoll refuses; usbfs can be watched, and so can a pipe.
   // umockdev tells the same stream of transfers that nobody expected.
   const std::string err = folder_.write("err", "").string();

@@ -50,6 +50,11 @@ class SimulatedUsb {
   CommandRun run(const std::string& program, const std::string& words,
                  const std::string& before = {}, const std::string& options = {}) const;
 
+  /// Writes what umockdev is told of it; the file's path.
+  std::string write_description() const {
+    return folder_.write("usb.umockdev", device_text()).string();
+  }
+
   /// A path in a folder of its own.
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
 

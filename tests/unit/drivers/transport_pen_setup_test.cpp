@@ -143,6 +143,26 @@ TEST(SetUpPen, ASilentDeviceIsAskedAllAndNotedAsSilent) {
   EXPECT_EQ(setup.initializer.parameters(), nullptr);
 }
 
+/// A clock that each look at it moves on.
+class HurryingClock final : public WaitingClock {
+ public:
+  Timestamp now() noexcept override { return time_ += std::chrono::seconds(2); }
+  void wait_until(Timestamp) noexcept override {}
+
+ private:
+  Timestamp time_{};
+};
+
+TEST(SetUpPen, BeginsNoRequestAfterTheLongestTime) {
+  DeadDevice device(false);
+  HurryingClock clock;
+  const PenSetup setup = set_up_pen(*find_pen_initialization(0x256C, 0x0999), device, clock);
+  EXPECT_THAT(setup.notes, ElementsAre("string 201"));
+  EXPECT_EQ(device.requests, 1);
+  ASSERT_TRUE(setup.trouble);
+  EXPECT_EQ(setup.trouble->what, "the device answers too slowly to be set up");
+}
+
 TEST(SetUpPen, EndsAtTheFirstTrouble) {
   DeadDevice device(true);
   const PenSetup setup = set_up_pen(*find_pen_initialization(0x28BD, 0x0907), device);

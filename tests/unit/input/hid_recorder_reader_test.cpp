@@ -82,8 +82,7 @@ TEST(HidRecorderReader, GivesNotes) {
 
 TEST(HidRecorderReader, GivesANoteBehindTheDescriptionAboveIt) {
   EXPECT_EQ(read_trace("N: a\n#limn string 201\nE: 0.0 1 01\n").order, "dnr.");
-  EXPECT_EQ(read_trace("N: a\nE: 0.0 1 01\nN: b\n#limn string 201\nE: 0.1 1 01\n").order,
-            "drdnr.");
+  EXPECT_EQ(read_trace("N: a\nE: 0.0 1 01\nN: b\n#limn string 201\nE: 0.1 1 01\n").order, "drdnr.");
 }
 
 TEST(HidRecorderReader, DescribesADeviceAgainWhenTheTraceDoes) {
