@@ -10,8 +10,8 @@
 
 namespace limn::app {
 
-/// What a listed device is to limn: the family of its table row, "HID pen", or "" where it is no
-/// pen.
+/// What a listed device is to limn: the family of its table row or of what its initialisation makes
+/// of it, "HID pen", or "" where it is no pen.
 std::string pen_kind(const ListedDevice& listed);
 
 /// Opens the devices that DEVICE names (see limn(1)), all pens where it is empty, and watches for

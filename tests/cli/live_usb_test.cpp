@@ -51,6 +51,7 @@ void make_small_pen(SimulatedUsb& pen) {
 class LiveUsb : public testing::Test {
  protected:
   void SetUp() override {
+    if (LIMN_HAS_LIBUSB == 0) GTEST_SKIP() << "this build has no libusb";
     if (!SimulatedUsb::is_possible()) GTEST_SKIP() << "umockdev is not installed";
   }
 };
