@@ -93,7 +93,7 @@ class UsbTransport final : public Transport {
   State drain(TransportSink& sink) noexcept override {
     if (gone_) return State::kGone;
     sink_ = &sink;
-    given_ = 0;
+    landings_ = 0;
     timeval none{0, 0};
     libusb_handle_events_timeout_completed(context(), &none, nullptr);
     sink_ = nullptr;
@@ -133,7 +133,6 @@ class UsbTransport final : public Transport {
         if (size > 0) {
           sink_->report(monotonic_clock().now(),
                         {flight.bytes.data(), std::min(size, flight.bytes.size())});
-          ++given_;
         }
         failures_ = 0;
         halts_ = 0;
@@ -155,8 +154,8 @@ class UsbTransport final : public Transport {
         fail_once();
         break;
     }
-    // A flood waits for the next drain.
-    if (given_ < kMostReports && !halted_ && !gone_) submit(flight);
+    // A flood, of empty reports as well, waits for the next drain.
+    if (++landings_ < kMostReports && !halted_ && !gone_) submit(flight);
   }
 
   void fail_once() noexcept { gone_ |= ++failures_ > kMostFailures; }
@@ -199,7 +198,7 @@ class UsbTransport final : public Transport {
   std::unique_ptr<UsbInterface> interface_;
   std::array<Flight, kFlights> flights_;
   TransportSink* sink_ = nullptr;  // during a drain
-  int given_ = 0;                  // reports in this drain
+  int landings_ = 0;               // in this drain
   int failures_ = 0;
   int halts_ = 0;
   int watch_error_ = 0;  // errno

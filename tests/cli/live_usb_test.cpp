@@ -191,14 +191,14 @@ TEST_F(LiveUsb, WordsThatNameNothingAreErrors) {
               HasSubstr("cannot be opened: No such device"));
 }
 
-TEST_F(LiveUsb, DrainingAllocatesNothingOfOurs) {
+TEST_F(LiveUsb, DrainingAFloodAllocatesNothingOfOursAndHasItsShare) {
   SimulatedUsb pen;
   make_small_pen(pen);
-  for (int i = 0; i < 200; ++i) pen.send(small_pen_report(i), 64);
+  for (int i = 0; i < 1000; ++i) pen.send(small_pen_report(i), 64);
   pen.fail(ENODEV, 64);
   const CommandRun run = pen.run(LIMN_DEVICE_PROBE, "drain");
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(run.out, "200 reports, 0 allocations, gone\n") << run.err;
+  EXPECT_EQ(run.out, "1000 reports, 0 allocations, gone\n") << run.err;
 }
 
 /// A Huion whose product no table knows; its string 200 is that of a New 1060 Plus: 50800 x 31750
