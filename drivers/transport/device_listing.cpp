@@ -4,16 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <utility>
 
 namespace limn {
 namespace {
-
-constexpr std::size_t kMostDescriptor = 4096;  // Linux takes no more
 
 /// UTF-8 of a wide string; unpaired or oversized code points become '?'.
 std::string narrow(const wchar_t* wide) {
@@ -34,28 +29,6 @@ std::string narrow(const wchar_t* wide) {
     }
   }
   return out;
-}
-
-std::string node_name(const std::string& node) { return node.substr(node.rfind('/') + 1); }
-
-/// What sysfs knows of the HID device behind a node.
-void add_from_sysfs(ListedDevice& listed) {
-  const std::string folder = "/sys/class/hidraw/" + node_name(listed.node) + "/device/";
-  std::ifstream descriptor(folder + "report_descriptor", std::ios::binary);
-  std::array<char, kMostDescriptor> bytes;
-  descriptor.read(bytes.data(), bytes.size());
-  listed.device.report_descriptor.assign(bytes.begin(), bytes.begin() + descriptor.gcount());
-  std::ifstream uevent(folder + "uevent");
-  for (std::string line; std::getline(uevent, line);) {
-    const auto value = [&line](std::string_view key) { return line.substr(key.size()); };
-    if (line.starts_with("DRIVER=")) listed.driver = value("DRIVER=");
-    if (line.starts_with("HID_NAME=")) listed.device.name = value("HID_NAME=");
-    if (line.starts_with("HID_PHYS=")) listed.device.physical_path = value("HID_PHYS=");
-    unsigned bus = 0;
-    if (std::sscanf(line.c_str(), "HID_ID=%x:", &bus) == 1) {
-      listed.device.bus = static_cast<std::uint16_t>(bus);
-    }
-  }
 }
 
 ListedDevice listed_from(const hid_device_info& info) {
@@ -92,6 +65,19 @@ Expected<std::vector<ListedDevice>> list_hid_devices() {
   hid_free_enumeration(first);
   std::sort(out.begin(), out.end(), by_number);
   return out;
+}
+
+Expected<std::vector<ListedDevice>> list_devices() {
+  auto devices = list_hid_devices();
+  if (!devices) return devices;
+  const auto add = [&devices](std::vector<ListedDevice> more) {
+    std::move(more.begin(), more.end(), std::back_inserter(*devices));
+  };
+  add(list_evdev_devices());
+  add(list_free_usb_devices());
+  if (auto spacenavd = find_spacenavd()) devices->push_back(*std::move(spacenavd));
+  mark_same_devices(*devices);
+  return devices;
 }
 
 }  // namespace limn

@@ -15,6 +15,8 @@ tl::unexpected<Error> absent() {
 
 Expected<std::vector<ListedDevice>> list_hid_devices() { return absent(); }
 
+Expected<std::vector<ListedDevice>> list_devices() { return absent(); }
+
 Expected<std::unique_ptr<Hotplug>> watch_devices(DeviceWatch) { return absent(); }
 
 }  // namespace limn

@@ -1,7 +1,5 @@
 #include "drivers/transport/diagnosis.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -10,6 +8,7 @@
 #include <set>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace limn {
 namespace {
@@ -38,12 +37,6 @@ Finding rules_finding(const std::string& root) {
       "and plug the devices in again"};
 }
 
-Finding node_finding(const ListedDevice& listed) {
-  if (listed.readable) return {Finding::State::kGood, listed.node, listed.device.name, ""};
-  return {Finding::State::kTrouble, listed.node, listed.device.name + ": no permission",
-          "install the udev rules and plug the device in again"};
-}
-
 /// The command name of a process, "" where it has gone.
 std::string command_of(const fs::path& process) {
   std::ifstream comm(process / "comm");
@@ -52,57 +45,160 @@ std::string command_of(const fs::path& process) {
   return name;
 }
 
-/// One finding a process that has one of the nodes open. Others may read a hidraw node beside limn,
-/// but a program that sets the device up can change what its reports mean.
-std::vector<Finding> holders(const std::vector<ListedDevice>& devices, const std::string& root) {
+struct Process {
+  std::string pid;
+  std::string command;
+  std::set<std::string> open;  // nodes of ours
+};
+
+/// All processes; `open` is empty of those of other users, whose files are not shown.
+std::vector<Process> processes(const std::vector<ListedDevice>& devices, const std::string& root) {
   std::set<std::string> nodes;
   for (const ListedDevice& listed : devices) nodes.insert(listed.node);
-  std::vector<Finding> out;
+  std::vector<Process> out;
   std::error_code error;
-  for (fs::directory_iterator process(root + "/proc", error), end; !error && process != end;
-       process.increment(error)) {
-    const std::string pid = process->path().filename().string();
-    if (pid.empty() || !std::all_of(pid.begin(), pid.end(),
-                                    [](unsigned char c) { return std::isdigit(c) != 0; })) {
+  for (fs::directory_iterator entry(root + "/proc", error), end; !error && entry != end;
+       entry.increment(error)) {
+    Process process;
+    process.pid = entry->path().filename().string();
+    if (!std::all_of(process.pid.begin(), process.pid.end(),
+                     [](unsigned char c) { return std::isdigit(c) != 0; })) {
       continue;
     }
-    std::error_code refused;  // of other users' processes: passed over
-    std::set<std::string> open;
-    for (fs::directory_iterator file(process->path() / "fd", refused), last;
-         !refused && file != last; file.increment(refused)) {
+    process.command = command_of(entry->path());
+    std::error_code refused;
+    for (fs::directory_iterator file(entry->path() / "fd", refused), last; !refused && file != last;
+         file.increment(refused)) {
       std::error_code gone;
       const std::string target = fs::read_symlink(file->path(), gone).string();
-      if (nodes.contains(target)) open.insert(target);
+      if (nodes.contains(target)) process.open.insert(target);
     }
-    for (const std::string& node : open) {
-      out.push_back({Finding::State::kNotice, node,
-                     command_of(process->path()) + " (process " + pid + ") has it open",
-                     "end that program if values look wrong"});
-    }
+    out.push_back(std::move(process));
   }
+  std::sort(out.begin(), out.end(), [](const Process& a, const Process& b) {
+    return std::pair(a.pid.size(), a.pid) < std::pair(b.pid.size(), b.pid);
+  });
   return out;
 }
 
-Finding spacenavd_finding(const std::string& root) {
-  if (exists(root + "/run/spnav.sock") || exists(root + "/var/run/spnav.sock")) {
-    return {Finding::State::kNotice, "spacenavd", "it runs and reads the 3D mice",
-            "stop it (systemctl stop spacenavd) if motions come twice"};
+std::string told(const Process& process) {
+  return process.command + " (process " + process.pid + ")";
+}
+
+/// Others may read a node beside limn, but a program that sets the device up can change what its
+/// reports mean.
+void add_holders(const std::vector<Process>& all, std::vector<Finding>& out) {
+  for (const Process& process : all) {
+    for (const std::string& node : process.open) {
+      out.push_back({Finding::State::kNotice, node, told(process) + " has it open",
+                     "end that program if values look wrong"});
+    }
+  }
+}
+
+/// Drivers of tablets outside the kernel. X.Org's and Wayland's (xf86-input-wacom, libinput) are
+/// no processes of their own, and libwacom is a list of devices: none of them disturbs limn.
+void add_tablet_drivers(const std::vector<Process>& all, std::vector<Finding>& out) {
+  struct Driver {
+    std::string_view command;  // as /proc/PID/comm has it: 15 characters at most
+    std::string_view what;
+  };
+  constexpr auto kDrivers = std::to_array<Driver>({
+      {"OpenTabletDrive", "OpenTabletDriver sets tablets up and takes them from the kernel"},
+      {"PenTablet", "XP-Pen's driver sets tablets up"},
+      {"xp-pen", "XP-Pen's driver sets tablets up"},
+      {"huiontablet", "Huion's driver sets tablets up"},
+      {"huionCore", "Huion's driver sets tablets up"},
+  });
+  for (const Process& process : all) {
+    for (const Driver& driver : kDrivers) {
+      if (!process.command.starts_with(driver.command)) continue;
+      out.push_back({Finding::State::kNotice, told(process), std::string(driver.what),
+                     "end it if reports are missing or values look wrong"});
+    }
+  }
+}
+
+/// spacenavd takes the event nodes of 3D mice for itself; hidraw it leaves to others.
+Finding spacenavd_finding(const std::vector<Process>& all, const std::string& root) {
+  const auto socket = find_spacenavd(root);
+  const auto process = std::find_if(all.begin(), all.end(),
+                                    [](const Process& p) { return p.command == "spacenavd"; });
+  if (socket) {
+    return {Finding::State::kNotice, "spacenavd",
+            "it runs and holds the event nodes of 3D mice; " + socket->node.substr(root.size()) +
+                " gives its motions",
+            "read the 3D mouse on hidraw or that socket, or stop spacenavd (systemctl stop "
+            "spacenavd)"};
+  }
+  if (process != all.end()) {
+    return {Finding::State::kTrouble, "spacenavd",
+            told(*process) + " holds 3D mice, but its socket is not there",
+            "start it again (systemctl restart spacenavd) or stop it"};
   }
   return {Finding::State::kGood, "spacenavd", "it does not run", ""};
 }
 
+/// Of a device that limn would read on hidraw: what Linux's driver does to its reports.
+void add_driver(const ListedDevice& listed, std::vector<Finding>& out) {
+  if (listed.backend != Backend::kHidraw || listed.driver.empty()) return;
+  const std::string what = "Linux's driver " + listed.driver + " has it";
+  if (listed.driver == "uclogic") {
+    out.push_back({Finding::State::kNotice, listed.node,
+                   what + ": it has set the tablet up and put its own descriptor in place",
+                   "nothing: limn decodes it either way"});
+  } else if (listed.driver == "wacom") {
+    out.push_back({Finding::State::kGood, listed.node, what + ", beside which limn reads", ""});
+  } else {
+    out.push_back({Finding::State::kGood, listed.node, what, ""});
+  }
+}
+
+Finding queues_finding() {
+  return {Finding::State::kGood, "queues",
+          "the kernel keeps 64 reports a reader on hidraw and tells nobody of more; 'limn monitor' "
+          "and 'limn record' count what may be lost, and the overruns that event nodes tell of",
+          ""};
+}
+
 }  // namespace
+
+Finding look_at(const ListedDevice& listed) {
+  using State = Finding::State;
+  if (listed.backend == Backend::kUsb) {
+    if (listed.driver == "usbfs") {
+      return {State::kTrouble, listed.node, listed.device.name + ": another program holds it",
+              "end that program"};
+    }
+    return {State::kNotice, listed.node, listed.device.name + ": no driver of Linux has it",
+            "plug it in again, or load the module usbhid"};
+  }
+  if (listed.readable) return {State::kGood, listed.node, listed.device.name, ""};
+  // Event nodes need no permission of their own where hidraw brings the same device.
+  const bool needed = listed.backend == Backend::kHidraw || listed.same_as.empty();
+  return {needed ? State::kTrouble : State::kNotice, listed.node,
+          listed.device.name + ": no permission",
+          listed.backend == Backend::kHidraw
+              ? "install the udev rules and plug the device in again"
+              : "log in at this machine's own screen, or read the device on hidraw"};
+}
 
 std::vector<Finding> diagnose(const std::vector<ListedDevice>& devices, const std::string& root) {
   std::vector<Finding> out;
   if (devices.empty()) {
     out.push_back({Finding::State::kNotice, "devices", "no HID device is here", "plug one in"});
   }
-  for (const ListedDevice& listed : devices) out.push_back(node_finding(listed));
+  for (const ListedDevice& listed : devices) {
+    if (listed.backend == Backend::kSpnav) continue;  // has a finding of its own
+    out.push_back(look_at(listed));
+    add_driver(listed, out);
+  }
   out.push_back(rules_finding(root));
-  auto open = holders(devices, root);
-  out.insert(out.end(), open.begin(), open.end());
-  out.push_back(spacenavd_finding(root));
+  const auto running = processes(devices, root);
+  add_holders(running, out);
+  add_tablet_drivers(running, out);
+  out.push_back(spacenavd_finding(running, root));
+  out.push_back(queues_finding());
   return out;
 }
 

@@ -144,7 +144,9 @@ class LiveReader::Reading {
         if (polled[first + k].revents != 0) drain(owners[k]);
       }
       if (hotplug_ && polled[1].revents != 0) {
-        for (auto& device : hotplug_->arrived()) add(std::move(device));
+        for (auto& device : hotplug_->arrived()) {
+          if (!reads(device->device())) add(std::move(device));
+        }
       }
       in_round_.store(false);
       signal_descriptor(ready_.get());
@@ -163,6 +165,15 @@ class LiveReader::Reading {
     slot.transport.reset();
     if (slot.dropped > 0) push_control(take_loss(index));
     push_control({RecordKind::kGone, index, monotonic_clock().now().count()});
+  }
+
+  /// Whether the device is being read: udev may tell of it again (udevadm trigger). Devices without
+  /// a place cannot be told from their twins.
+  bool reads(const TraceDevice& device) const {
+    return !device.physical_path.empty() &&
+           std::any_of(slots_.begin(), slots_.end(), [&device](const Slot& slot) {
+             return slot.transport && same_device(*slot.device, device);
+           });
   }
 
   void add(std::unique_ptr<Transport> transport) {
@@ -197,12 +208,17 @@ class LiveReader::Reading {
     Slot& slot = slots_[head.device];
     if (slot.dropped > 0) {
       if (ring_.reserve(2 * sizeof head + size + kControlBytes).empty()) {
-        ++slot.dropped;
+        drop(slot);
         return;
       }
       push(take_loss(head.device), nullptr, 0, 0);
     }
-    if (!push(head, data, size, kControlBytes)) ++slot.dropped;
+    if (!push(head, data, size, kControlBytes)) drop(slot);
+  }
+
+  static void drop(Slot& slot) noexcept {
+    ++slot.dropped;
+    if (slot.transport) slot.transport->tell_whole_state();
   }
 
   RecordHead take_loss(DeviceIndex index) noexcept {

@@ -1,10 +1,17 @@
 #include "drivers/transport/open_device.hpp"
 
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
+#include "drivers/transport/evdev_transport.hpp"
 #include "drivers/transport/hidraw_control.hpp"
 #include "drivers/transport/hidraw_transport.hpp"
 #include "drivers/transport/pen_setup.hpp"
+#include "drivers/transport/spnav_transport.hpp"
+#include "drivers/transport/sysfs.hpp"
 #include "drivers/transport/usb_transport.hpp"
 
 namespace limn {
@@ -62,16 +69,96 @@ Expected<OpenedDevice> open_by_usb(const ListedDevice& listed, const PenInitiali
   return told(*std::move(transport), std::move(learnt));
 }
 
+bool is_socket(const std::string& node) {
+  struct stat status {};
+  return ::stat(node.c_str(), &status) == 0 && S_ISSOCK(status.st_mode);
+}
+
+/// By the name that the system gives it, whatever link led there.
+bool is_event_node(const std::string& node) {
+  const auto device = device_of_node(node);
+  return (device ? device->name() : node.substr(node.rfind('/') + 1)).starts_with("event");
+}
+
+Expected<OpenedDevice> opened(Expected<std::unique_ptr<Transport>> transport) {
+  if (!transport) return tl::unexpected(std::move(transport.error()));
+  return OpenedDevice{*std::move(transport), std::nullopt};
+}
+
+std::string label(const ListedDevice& listed) { return listed.node + ", " + listed.device.name; }
+
 }  // namespace
 
 Expected<std::vector<ListedDevice>> list_devices_of(Backend backend) {
-  return backend == Backend::kUsb ? list_usb_devices() : list_hid_devices();
+  switch (backend) {
+    case Backend::kUsb:
+      return list_usb_devices();
+    case Backend::kEvdev:
+      return list_evdev_devices();
+    case Backend::kSpnav: {
+      auto spacenavd = find_spacenavd();
+      return spacenavd ? std::vector{*std::move(spacenavd)} : std::vector<ListedDevice>();
+    }
+    case Backend::kHidraw:
+      break;
+  }
+  return list_hid_devices();
+}
+
+Backend backend_of_node(const std::string& node) {
+  if (is_socket(node)) return Backend::kSpnav;
+  if (node.starts_with("/dev/bus/usb/")) return Backend::kUsb;
+  return is_event_node(node) ? Backend::kEvdev : Backend::kHidraw;
 }
 
 Expected<OpenedDevice> open_device(const ListedDevice& listed, bool initialize) {
   const PenInitialization* sequence = initialize ? initialization_of(listed) : nullptr;
-  return listed.backend == Backend::kUsb ? open_by_usb(listed, sequence)
-                                         : open_by_hidraw(listed, sequence);
+  switch (listed.backend) {
+    case Backend::kUsb:
+      return open_by_usb(listed, sequence);
+    case Backend::kEvdev:
+      return opened(open_evdev(listed.node));
+    case Backend::kSpnav:
+      return opened(open_spnav(listed.node));
+    case Backend::kHidraw:
+      break;
+  }
+  return open_by_hidraw(listed, sequence);
+}
+
+DeviceChoice choose_rows(const std::vector<ListedDevice>& wanted, const ListedDevice* spacenavd) {
+  DeviceChoice choice;
+  bool spacenavd_taken = false;
+  for (const ListedDevice& row : wanted) {
+    if (row.backend == Backend::kEvdev && row.same_as.empty()) choice.rows.push_back(row);
+    if (row.backend != Backend::kHidraw) continue;
+    if (row.readable) {
+      choice.rows.push_back(row);
+      if (spacenavd != nullptr) {
+        choice.notes.push_back(label(row) + ": spacenavd uses it, too; both get its motions");
+      }
+      continue;
+    }
+    if (spacenavd != nullptr) {
+      if (!spacenavd_taken) choice.rows.push_back(*spacenavd);
+      spacenavd_taken = true;
+      choice.notes.push_back(label(row) + ": no permission; spacenavd's motions are used instead");
+      continue;
+    }
+    const std::size_t before = choice.rows.size();
+    std::copy_if(wanted.begin(), wanted.end(), std::back_inserter(choice.rows),
+                 [&row](const ListedDevice& other) {
+                   return other.backend == Backend::kEvdev && other.same_as == row.node &&
+                          other.readable;
+                 });
+    if (choice.rows.size() == before) {
+      choice.rows.push_back(row);
+      continue;
+    }
+    choice.notes.push_back(label(row) + ": no permission; " + choice.rows[before].node +
+                           " is used instead");
+  }
+  return choice;
 }
 
 }  // namespace limn

@@ -41,6 +41,10 @@ class Transport {
   /// makes sense then.
   virtual State drain(TransportSink& sink) noexcept = 0;
 
+  /// What was given since the last drain() did not all arrive: where reports tell changes only, the
+  /// next one must tell the whole state. Nothing to do where each report stands for itself.
+  virtual void tell_whole_state() noexcept {}
+
   static constexpr int kMostReports = 128;
 
   /// What was learnt when it was opened, as notes of a recording (TraceNote) that follow its

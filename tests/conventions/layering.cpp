@@ -33,7 +33,7 @@ const std::vector<Layer>& layers() {
       // must be is in its report descriptor.
       {"drivers/transport",
        {"input", "drivers/devices", "drivers/hid"},
-       {"libusb-1.0/", "hidapi/", "linux/", "libevdev/", "libudev.h", "posix", "sys/"}},
+       {"libusb-1.0/", "hidapi/", "linux/", "libevdev/", "libudev.h", "spnav.h", "posix", "sys/"}},
 
       {"modeler/base", {"input/base"}, {"Eigen/"}},
       {"modeler/bspline", {"input/base", "modeler/base"}, {"Eigen/"}},
@@ -76,7 +76,7 @@ const std::vector<Layer>& layers() {
       {"tests",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
        {"gtest/", "gmock/", "benchmark/", "sanitizer/", "Eigen/", "nlohmann/", "cairo",
-        "opencascade", "sisl.h", "posix", "dlfcn.h", "linux/", "sys/"}},
+        "opencascade", "sisl.h", "umockdev.h", "posix", "dlfcn.h", "linux/", "sys/"}},
   };
   return table;
 }

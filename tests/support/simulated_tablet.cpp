@@ -71,7 +71,8 @@ constexpr Key kKeys[] = {{BTN_TOOL_PEN, &PenAction::in_range},
                          {BTN_TOUCH, &PenAction::tip},
                          {BTN_STYLUS, &PenAction::barrel}};
 
-// Sizes of the bitmaps that libevdev asks for.
+// Sizes that libevdev asks for.
+constexpr std::size_t kTextBytes = 255;
 constexpr std::size_t kWord = sizeof(long);
 constexpr std::size_t kKeyBytes = (KEY_CNT + 8 * kWord - 1) / (8 * kWord) * kWord;
 constexpr std::size_t kForceFeedbackBytes = (FF_CNT + 8 * kWord - 1) / (8 * kWord) * kWord;
@@ -94,10 +95,12 @@ std::string SimulatedTablet::usb_and_hid_devices() {
          kName + "\\n\nA: manufacturer=Limn\\n\n\n";
 }
 
-std::string SimulatedTablet::hidraw_device() {
-  return "P: " + hidraw_path() +
-         "\nN: hidraw0\nE: DEVNAME=/dev/hidraw0\nE: MAJOR=243\nE: MINOR=0\nE: SUBSYSTEM=hidraw\n"
-         "L: device=../../../0003:1209:0002.0001\n\n";
+std::string SimulatedTablet::hidraw_device(int number) {
+  const std::string digits = std::to_string(number);
+  return "P: " + hidraw_path(number) + "\nN: hidraw" + digits + "\nE: DEVNAME=/dev/hidraw" +
+         digits + "\nE: MAJOR=243\nE: MINOR=" + digits +
+         "\nE: SUBSYSTEM=hidraw\nA: dev=243:" + digits +
+         "\\n\nL: device=../../../0003:1209:0002.0001\n\n";
 }
 
 std::string SimulatedTablet::event_device() {
@@ -114,12 +117,12 @@ std::string SimulatedTablet::event_device() {
          "A: capabilities/key=c01 0 0 0 0 0\\n\n\n";
 }
 
-std::string SimulatedTablet::hidraw_ioctls() {
+std::string SimulatedTablet::hidraw_ioctls(int number) {
   const auto descriptor = report_descriptor();
   const auto size = bytes_of(static_cast<std::uint32_t>(descriptor.size()));
   auto padded = descriptor;
   padded.resize(4096);
-  return std::string("@DEV ") + kHidraw + "\nHIDIOCGRAWINFO 0 0300000009120200\n" +
+  return "@DEV /dev/hidraw" + std::to_string(number) + "\nHIDIOCGRAWINFO 0 0300000009120200\n" +
          "HIDIOCGRDESCSIZE 0 " + hex(size) + "\nHIDIOCGRDESC 0 " + hex(size) + hex(padded) +
          "\nHIDIOCGRAWNAME " + std::to_string(sizeof kName) + " " + hex(kName, 256) +
          "\nHIDIOCGRAWPHYS " + std::to_string(sizeof kPhys) + " " + hex(kPhys, 256) + "\n";
@@ -137,8 +140,9 @@ std::string SimulatedTablet::event_ioctls(const PenAction& state) {
   std::string text = std::string("@DEV ") + kEvent + "\n";
   text += answer("EVIOCGVERSION", 0, bytes_of(std::uint32_t{0x010001}));
   text += answer("EVIOCGID", 0, bytes_of(input_id{BUS_USB, 0x1209, 2, 0x100}));
-  text += "EVIOCGNAME(0) " + std::to_string(sizeof kName) + " " + hex(kName, 256) + "\n";
-  text += "EVIOCGPHYS(0) " + std::to_string(sizeof kPhys) + " " + hex(kPhys, 256) + "\n";
+  text += "EVIOCGNAME(0) " + std::to_string(sizeof kName) + " " + hex(kName, kTextBytes) + "\n";
+  text += "EVIOCGPHYS(0) " + std::to_string(sizeof kPhys) + " " + hex(kPhys, kTextBytes) + "\n";
+  text += "EVIOCGUNIQ(0) 1 " + hex("", kTextBytes) + "\n";
   text += answer("EVIOCGPROP(0)", kWord, bitmap(kWord, {}));
   text += answer("EVIOCGBIT(0)", kWord, bitmap(kWord, {EV_SYN, EV_KEY, EV_ABS, EV_MSC}));
   text += answer("EVIOCGBIT(1)", kKeyBytes, bitmap(kKeyBytes, keys));

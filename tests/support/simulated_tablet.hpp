@@ -35,16 +35,18 @@ class SimulatedTablet {
   /// Where the devices lie in sysfs.
   static std::string usb_path() { return "/devices/pci0000:00/0000:00:14.0/usb1/1-1"; }
   static std::string hid_path() { return usb_path() + "/1-1:1.0/0003:1209:0002.0001"; }
-  static std::string hidraw_path() { return hid_path() + "/hidraw/hidraw0"; }
+  static std::string hidraw_path(int number = 0) {
+    return hid_path() + "/hidraw/hidraw" + std::to_string(number);
+  }
   static std::string event_path() { return hid_path() + "/input/input5/event300"; }
 
   /// The devices, as umockdev describes them.
   static std::string usb_and_hid_devices();
-  static std::string hidraw_device();
+  static std::string hidraw_device(int number = 0);
   static std::string event_device();
 
   /// Answers to ioctls, in umockdev's format. The event node's state is that of `state`.
-  static std::string hidraw_ioctls();
+  static std::string hidraw_ioctls(int number = 0);
   static std::string event_ioctls(const PenAction& state);
 
   static std::vector<std::uint8_t> report_descriptor();

@@ -33,12 +33,16 @@ std::vector<std::string> texts(const std::vector<Finding>& findings) {
   return out;
 }
 
+constexpr const char* kQueues =
+    "good queues: the kernel keeps 64 reports a reader on hidraw and tells nobody of more; 'limn "
+    "monitor' and 'limn record' count what may be lost, and the overruns that event nodes tell of";
+
 TEST(Diagnose, ABareSystem) {
   const TempFolder root;
   EXPECT_THAT(texts(diagnose({}, root.path())),
               ElementsAre("notice devices: no HID device is here",
                           "trouble udev rules: 70-limn.rules is not installed",
-                          "good spacenavd: it does not run"));
+                          "good spacenavd: it does not run", kQueues));
 }
 
 TEST(Diagnose, FindsRulesWhereUdevLooks) {
@@ -50,7 +54,7 @@ TEST(Diagnose, FindsRulesWhereUdevLooks) {
     EXPECT_THAT(found, ElementsAre("good /dev/hidraw0: A Pen",
                                    std::string("good udev rules: /") + folder +
                                        "/udev/rules.d/70-limn.rules",
-                                   "good spacenavd: it does not run"));
+                                   "good spacenavd: it does not run", kQueues));
   }
 }
 
@@ -67,7 +71,49 @@ TEST(Diagnose, NamesPermissionsHoldersAndSpacenavd) {
               ElementsAre("good /dev/hidraw0: A Pen", "trouble /dev/hidraw1: A Pen: no permission",
                           "trouble udev rules: 70-limn.rules is not installed",
                           "notice /dev/hidraw1: OpenTabletDrive (process 42) has it open",
-                          "notice spacenavd: it runs and reads the 3D mice"));
+                          "notice OpenTabletDrive (process 42): OpenTabletDriver sets tablets up "
+                          "and takes them from the kernel",
+                          "notice spacenavd: it runs and holds the event nodes of 3D mice; "
+                          "/run/spnav.sock gives its motions",
+                          kQueues));
+}
+
+TEST(Diagnose, ASpacenavdWithoutItsSocketIsInTheWay) {
+  const TempFolder root;
+  fs::create_directories(root.path() / "proc/7");
+  root.write("proc/7/comm", "spacenavd\n");
+  EXPECT_EQ(texts(diagnose({pen("/dev/hidraw0", true)}, root.path())).at(2),
+            "trouble spacenavd: spacenavd (process 7) holds 3D mice, but its socket is not there");
+}
+
+TEST(Diagnose, NamesTheDriverOfLinux) {
+  const TempFolder root;
+  ListedDevice listed = pen("/dev/hidraw0", true);
+  for (const auto& [driver, text] :
+       {std::pair{"wacom",
+                  "good /dev/hidraw0: Linux's driver wacom has it, beside which limn "
+                  "reads"},
+        std::pair{"hid-generic", "good /dev/hidraw0: Linux's driver hid-generic has it"},
+        std::pair{"uclogic",
+                  "notice /dev/hidraw0: Linux's driver uclogic has it: it has set the "
+                  "tablet up and put its own descriptor in place"}}) {
+    listed.driver = driver;
+    EXPECT_EQ(texts(diagnose({listed}, root.path())).at(1), text);
+  }
+}
+
+TEST(LookAt, KnowsWhatKeepsADeviceFromLimn) {
+  ListedDevice listed = pen("/dev/input/event3", false);
+  listed.backend = Backend::kEvdev;
+  EXPECT_EQ(look_at(listed).state, State::kTrouble);
+  listed.same_as = "/dev/hidraw0";
+  EXPECT_EQ(look_at(listed).state, State::kNotice) << "hidraw will do";
+  listed.backend = Backend::kUsb;
+  EXPECT_THAT(texts({look_at(listed)}),
+              ElementsAre("notice /dev/input/event3: A Pen: no driver of Linux has it"));
+  listed.driver = "usbfs";
+  EXPECT_THAT(texts({look_at(listed)}),
+              ElementsAre("trouble /dev/input/event3: A Pen: another program holds it"));
 }
 
 }  // namespace
