@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -20,6 +21,9 @@ enum class Backend : std::uint8_t {
   kEvdev,   ///< Linux's event nodes: what its drivers decoded
   kSpnav,   ///< 3D mice, by spacenavd
 };
+
+inline constexpr std::array kBackends = {Backend::kHidraw, Backend::kUsb, Backend::kEvdev,
+                                         Backend::kSpnav};
 
 /// "hidraw", "usb", "evdev", "spnav".
 std::string_view name(Backend backend) noexcept;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -70,8 +71,8 @@ struct DoctorArguments {
 
 /// Which devices to open, and how.
 struct LiveArguments {
-  std::string device;  ///< VID:PID[:N] or a node; empty for all pens
-  Backend backend = Backend::kHidraw;
+  std::string device;              ///< VID:PID[:N] or a node; empty for all pens
+  std::optional<Backend> backend;  ///< none: hidraw where it may be read, else what can be
   bool initialize = true;
 };
 

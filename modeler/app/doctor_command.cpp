@@ -1,18 +1,25 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 
 #include "drivers/transport/diagnosis.hpp"
 #include "modeler/app/command.hpp"
+#include "modeler/app/live_input.hpp"
 #include "modeler/app/standard_output.hpp"
 #include "modeler/app/table.hpp"
 
 namespace limn::app {
 
 Outcome run_doctor(const DoctorArguments& arguments) {
-  const auto listed = in_file("", list_hid_devices());
+  const auto listed = in_file("", list_devices());
   if (!listed) return tl::unexpected(listed.error());
-  const auto findings = diagnose(*listed);
+  std::vector<ListedDevice> ours;
+  std::copy_if(
+      listed->begin(), listed->end(), std::back_inserter(ours), [](const ListedDevice& one) {
+        return one.backend == Backend::kHidraw || traits_of(one).kind != DeviceKind::kOther;
+      });
+  const auto findings = diagnose(ours);
   constexpr std::array<const char*, 3> kStates = {"good", "notice", "trouble"};
   Table table({{"state", "state"}, {"subject", "subject"}, {"what", "what"}, {"remedy", "remedy"}});
   for (const Finding& finding : findings) {

@@ -10,7 +10,6 @@
 #include <optional>
 #include <utility>
 
-#include "drivers/devices/pen_decoder.hpp"
 #include "drivers/devices/pen_initialization.hpp"
 #include "drivers/devices/pen_spec.hpp"
 #include "drivers/transport/open_device.hpp"
@@ -63,11 +62,11 @@ Expected<std::unique_ptr<Transport>> open_one(const ListedDevice& listed, bool i
 
 /// Opens what can be opened; where nothing can, the first reason.
 tl::expected<std::vector<std::unique_ptr<Transport>>, Failure> open_all(
-    const std::vector<ListedDevice>& devices, bool initialize) {
+    const std::vector<ListedDevice>& rows, bool initialize) {
   std::vector<std::unique_ptr<Transport>> opened;
   std::optional<Error> first;
-  for (const ListedDevice& listed : devices) {
-    auto transport = open_one(listed, initialize);
+  for (const ListedDevice& row : rows) {
+    auto transport = open_one(row, initialize);
     if (transport) {
       opened.push_back(*std::move(transport));
     } else if (!first) {
@@ -81,17 +80,42 @@ tl::expected<std::vector<std::unique_ptr<Transport>>, Failure> open_all(
 /// Opens what lies behind a node, once: what goes away stays away.
 tl::expected<std::unique_ptr<LiveReader>, Failure> open_node(
     const std::string& node, const LiveArguments& live, const std::vector<ListedDevice>& listed) {
+  const Backend backend = live.backend.value_or(backend_of_node(node));
   std::vector<ListedDevice> chosen;
   std::copy_if(listed.begin(), listed.end(), std::back_inserter(chosen),
-               [&node](const ListedDevice& one) { return one.node == node; });
+               [&](const ListedDevice& one) { return one.node == node && one.backend == backend; });
   if (chosen.empty()) {  // let the backend say what is wrong with it
     chosen.emplace_back();
     chosen.back().node = node;
-    chosen.back().backend = live.backend;
+    chosen.back().backend = backend;
   }
   auto opened = open_all(chosen, live.initialize);
   if (!opened) return tl::unexpected(std::move(opened.error()));
   return in_file("", LiveReader::start(*std::move(opened)));
+}
+
+/// One row a device, and a line on standard error where the user should know of it.
+std::vector<ListedDevice> choose(const std::vector<ListedDevice>& wanted,
+                                 const std::vector<ListedDevice>& listed) {
+  const bool mouse = std::any_of(wanted.begin(), wanted.end(), [](const ListedDevice& one) {
+    return traits_of(one).kind == DeviceKind::k3dMouse;
+  });
+  const auto spacenavd = std::find_if(listed.begin(), listed.end(), [](const ListedDevice& one) {
+    return one.backend == Backend::kSpnav;
+  });
+  DeviceChoice choice =
+      choose_rows(wanted, mouse && spacenavd != listed.end() ? &*spacenavd : nullptr);
+  for (const std::string& note : choice.notes) std::fprintf(stderr, "limn: %s\n", note.c_str());
+  return std::move(choice.rows);
+}
+
+/// Those that come later on the backend; on hidraw where none was asked for.
+DeviceWatch watch_of(std::optional<Backend> backend) {
+  DeviceWatch watch;
+  if (backend == Backend::kUsb) watch.subsystem = "usb";
+  if (backend == Backend::kEvdev) watch.subsystem = "input";
+  if (backend) watch.list = [backend] { return list_devices_of(*backend); };
+  return watch;
 }
 
 std::atomic<LiveReader*> stopped_by_signal = nullptr;
@@ -112,17 +136,19 @@ void handle(int signal, void (*handler)(int)) {
 
 }  // namespace
 
-std::string pen_kind(const ListedDevice& listed) {
-  const auto decoder = PenDecoder::make(listed.device.vendor, listed.device.product,
-                                        listed.device.report_descriptor);
-  if (!decoder || !decoder->has_pen()) {
-    const PenInitialization* sequence =
-        find_pen_initialization(listed.device.vendor, listed.device.product);
-    const bool becomes_one =
-        sequence != nullptr && sequence->interface_number == listed.interface_number;
-    return becomes_one ? std::string(name(sequence->family)) : std::string();
+DeviceTraits traits_of(const ListedDevice& listed) {
+  DeviceTraits traits = limn::traits_of(listed.device);
+  if (listed.backend == Backend::kSpnav) traits = {DeviceKind::k3dMouse, "3D mouse", {}, {}};
+  const bool mere_axes = listed.backend == Backend::kEvdev && !listed.tablet;
+  if (mere_axes && traits.kind == DeviceKind::kPen) return {};
+  if (traits.kind != DeviceKind::kOther) return traits;
+  const PenInitialization* sequence =
+      find_pen_initialization(listed.device.vendor, listed.device.product);
+  const bool by_reports = listed.backend == Backend::kHidraw || listed.backend == Backend::kUsb;
+  if (by_reports && sequence != nullptr && sequence->interface_number == listed.interface_number) {
+    return {DeviceKind::kPen, name(sequence->family), {}, {}};
   }
-  return decoder->spec() != nullptr ? std::string(name(decoder->spec()->family)) : "HID pen";
+  return traits;
 }
 
 tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArguments& live) {
@@ -137,13 +163,13 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArg
                          "give VID:PID, VID:PID:N or a node, as 'limn devices' shows them");
     }
   }
-  auto listed = in_file("", list_devices_of(live.backend));
+  auto listed = in_file("", live.backend ? list_devices_of(*live.backend) : list_devices());
   if (!listed && !by_node) return tl::unexpected(std::move(listed.error()));
   if (!listed) listed.emplace();
   if (by_node) return open_node(device, live, *listed);
   const auto wanted = [id](const ListedDevice& one) {
     return id ? one.device.vendor == id->vendor && one.device.product == id->product
-              : !pen_kind(one).empty();
+              : traits_of(one).kind == DeviceKind::kPen;
   };
   std::vector<ListedDevice> chosen;
   std::copy_if(listed->begin(), listed->end(), std::back_inserter(chosen), wanted);
@@ -158,14 +184,11 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArg
                      id ? "no device " + device + " is here" : "no pen is here",
                      "plug it in and see 'limn devices'");
   }
+  if (!live.backend && (!id || !id->ordinal)) chosen = choose(chosen, *listed);
   auto opened = open_all(chosen, initialize);
   if (!opened) return tl::unexpected(std::move(opened.error()));
   // Without udev what goes away stays away; everything else still works.
-  DeviceWatch watch;
-  if (live.backend == Backend::kUsb) {
-    watch.subsystem = "usb";
-    watch.list = list_usb_devices;
-  }
+  DeviceWatch watch = watch_of(live.backend);
   watch.wanted = [wanted, interface_number](const ListedDevice& one) {
     return wanted(one) && (!interface_number || one.interface_number == *interface_number);
   };

@@ -82,10 +82,11 @@ void add_live(CLI::App& command, LiveArguments& live) {
       ->type_name("");
   add_value(
       command, "--backend",
-      [&live](const std::string& text) { return parse_backend(text, live.backend); },
-      "How to read them: hidraw, or usb, which takes them from Linux's drivers")
-      ->type_name("BACKEND")
-      ->default_str("hidraw");
+      [&live](const std::string& text) { return parse_backend(text, live.backend.emplace()); },
+      "How to read them: hidraw, evdev, spnav, or usb, which takes them from Linux's drivers; "
+      "hidraw "
+      "where possible unless given")
+      ->type_name("BACKEND");
   command.add_flag(
       "--no-init", [&live](std::int64_t) { live.initialize = false; },
       "Read devices as they are, without the requests that set them up");
@@ -128,8 +129,9 @@ int run(int argc, char** argv) {
   decode_command->callback([&] { outcome = run_decode(decode); });
 
   DevicesArguments devices;
-  CLI::App* devices_command = app.add_subcommand("devices", "List the pens that are plugged in");
-  devices_command->add_flag("--all", devices.all, "List every HID device");
+  CLI::App* devices_command =
+      app.add_subcommand("devices", "List the pens and 3D mice that are plugged in");
+  devices_command->add_flag("--all", devices.all, "List every input device");
   add_format(*devices_command, devices.format);
   devices_command->callback([&] { outcome = run_devices(devices); });
 
@@ -148,8 +150,8 @@ int run(int argc, char** argv) {
   monitor_command->callback([&] { outcome = run_monitor(monitor); });
 
   RecordArguments record;
-  CLI::App* record_command =
-      app.add_subcommand("record", "Record what devices send, as a hid-recorder file");
+  CLI::App* record_command = app.add_subcommand(
+      "record", "Record what devices send, as a hid-recorder (event nodes: evemu) file");
   add_live(*record_command, record.live);
   record_command
       ->add_option("-o,--output", record.output,

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "drivers/devices/device_traits.hpp"
 #include "drivers/devices/trace_decoder.hpp"
 #include "drivers/transport/paced_reader.hpp"
 #include "input/trace/noted_loss.hpp"
@@ -30,6 +31,7 @@ struct Watched {
   std::uint64_t lost = 0;
   bool lost_estimated = false;
   bool gone = false;
+  bool mouse = false;  // a 3D mouse: no samples yet
   std::optional<PenSample> last;
 };
 
@@ -79,10 +81,13 @@ class WatchingReader final : public TraceReader {
     device.id = id;
     device.name = described.device->name;
     device.gone = false;
+    device.mouse = traits_of(*described.device).kind == DeviceKind::k3dMouse;
   }
-  void count(const Report& report) {
-    last_report = report.time;
-    devices[report.device].timing.report(report.time);
+  void count(const Report& report) { count(report.device, report.time); }
+  void count(const EvdevFrame& frame) { count(frame.device, frame.time); }
+  void count(DeviceIndex device, Timestamp time) {
+    last_report = time;
+    devices[device].timing.report(time);
   }
   void count(const TraceNote& note) {
     Watched& device = devices[note.device];
@@ -129,7 +134,7 @@ std::string describe(const Watched& device) {
       text += line;
     }
   } else {
-    text += "no pen yet";
+    text += device.mouse ? "a 3D mouse" : "no pen yet";
   }
   const DurationStatistics& intervals = device.timing.intervals();
   std::snprintf(line, sizeof line,

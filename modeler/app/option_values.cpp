@@ -45,14 +45,14 @@ std::string parse_format(std::string_view text, OutputFormat& format) {
 }
 
 std::string parse_backend(std::string_view text, Backend& backend) {
-  constexpr std::array<std::string_view, 2> kNames = {"hidraw", "usb"};
-  constexpr std::array<Backend, 2> kBackends = {Backend::kHidraw, Backend::kUsb};
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (text != kNames[i]) continue;
-    backend = kBackends[i];
+  std::vector<std::string_view> names;
+  for (const Backend known : kBackends) {
+    names.push_back(name(known));
+    if (text != names.back()) continue;
+    backend = known;
     return {};
   }
-  return "there is no backend " + quoted(text) + "; " + suggest(text, kNames);
+  return "there is no backend " + quoted(text) + "; " + suggest(text, names);
 }
 
 std::string parse_length(std::string_view text, double& length_mm) {

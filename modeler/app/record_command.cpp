@@ -4,8 +4,10 @@
 #include <chrono>
 #include <cstdio>
 #include <optional>
+#include <vector>
 
 #include "drivers/transport/paced_reader.hpp"
+#include "input/trace/evemu_writer.hpp"
 #include "input/trace/hid_recorder_writer.hpp"
 #include "input/trace/noted_loss.hpp"
 #include "modeler/app/command.hpp"
@@ -25,34 +27,50 @@ constexpr Timestamp kProgressPeriod = 200ms;
 /// What a recording holds so far.
 struct Counts {
   std::uint64_t reports = 0;
+  std::uint64_t frames = 0;
   std::uint64_t lost = 0;
   bool lost_estimated = false;
   std::uint64_t devices = 0;
 };
 
-/// Writes events with times from the first event's on.
+/// Writes events with times from the first event's on: reports as a hid-recorder file, what the
+/// kernel decoded as an evemu file, which holds one device.
 class Recorder {
  public:
-  explicit Recorder(ByteSink& sink) : writer_(sink) {}
+  explicit Recorder(ByteSink& sink) : reports_(sink), frames_(sink) {
+    shifted_.reserve(kMaxFrameEvents);
+  }
   const Counts& counts() const noexcept { return counts_; }
 
   Expected<void> operator()(const DeviceDescribed& described) {
+    const bool decoded = !described.device->axes.empty();
+    const bool mixed = counts_.devices > 0 && (decoded || evemu_) &&
+                       (decoded != evemu_ || described.device->index != 0);
+    if (mixed) {
+      return fail(ErrorCode::kLimit, "", "an evemu file, for event nodes, holds one device",
+                  "name the one to record");
+    }
+    evemu_ = decoded;
     counts_.devices = std::max<std::uint64_t>(counts_.devices, described.device->index + 1U);
-    return writer_.describe(*described.device);
+    return evemu_ ? frames_.describe(*described.device) : reports_.describe(*described.device);
   }
   Expected<void> operator()(const Report& report) {
-    if (!start_) start_ = report.time;
     ++counts_.reports;
-    // A device's first report may have been stamped before another one's that came out first.
-    return writer_.write(
-        {report.device, std::max(Timestamp(0), report.time - *start_), report.bytes});
+    return reports_.write({report.device, since_start(report.time), report.bytes});
+  }
+  Expected<void> operator()(const EvdevFrame& frame) {
+    ++counts_.frames;
+    shifted_.assign(frame.events.begin(), frame.events.end());
+    for (EvdevEvent& event : shifted_) event.time = since_start(event.time);
+    return frames_.write({frame.device, since_start(frame.time), shifted_});
   }
   Expected<void> operator()(const TraceNote& note) {
     if (const auto loss = noted_loss(note.text)) {
       counts_.lost += loss->count;
       counts_.lost_estimated |= loss->estimated;
     }
-    return writer_.note(note.text, note.device);
+    if (!evemu_) return reports_.note(note.text, note.device);
+    return noted_loss(note.text) ? frames_.lost() : Expected<void>();
   }
   /// Nothing else comes from devices.
   template <class Other>
@@ -61,7 +79,16 @@ class Recorder {
   }
 
  private:
-  HidRecorderWriter writer_;
+  /// A device's first report may have been stamped before another one's that came out first.
+  Timestamp since_start(Timestamp time) noexcept {
+    if (!start_) start_ = time;
+    return std::max(Timestamp(0), time - *start_);
+  }
+
+  HidRecorderWriter reports_;
+  EvemuWriter frames_;
+  bool evemu_ = false;
+  std::vector<EvdevEvent> shifted_;
   std::optional<Timestamp> start_;
   Counts counts_;
 };
@@ -69,8 +96,9 @@ class Recorder {
 std::string summarise(const Counts& counts, Timestamp duration) {
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%.1f s", to_seconds(duration));
-  std::string text = count_of(counts.reports, "report") + " of " +
-                     count_of(counts.devices, "device") + " in " + seconds;
+  std::string text =
+      (counts.frames > 0 ? count_of(counts.frames, "frame") : count_of(counts.reports, "report")) +
+      " of " + count_of(counts.devices, "device") + " in " + seconds;
   if (counts.lost > 0) {
     text += counts.lost_estimated ? ", at least " : ", ";
     text += std::to_string(counts.lost) + " lost";

@@ -12,6 +12,7 @@
 #include "tests/cli/run_limn.hpp"
 #include "tests/cli/sample_traces.hpp"
 #include "tests/support/recordings.hpp"
+#include "tests/support/simulated_tablet.hpp"
 
 namespace limn::test {
 namespace {
@@ -61,7 +62,8 @@ class SimulatedPen {
                              "L: device=../../../0003:1209:0001.0001\n\n"
                              "P: " +
                              hid +
-                             "\nE: DRIVER=hid-generic\n"
+                             "\nL: driver=../../../../../bus/hid/drivers/hid-generic\n"
+                             "E: DRIVER=hid-generic\n"
                              "E: HID_ID=0003:00001209:00000001\nE: HID_NAME=Small Pen\n"
                              "E: HID_PHYS=usb-1/input0\nE: HID_UNIQ=\nE: SUBSYSTEM=hid\n"
                              "H: report_descriptor=" +
@@ -120,6 +122,132 @@ class LiveDevices : public testing::Test {
   }
 };
 
+/// A tablet on both sides of Linux, whose event node tells a stroke.
+class LiveTablet {
+ public:
+  LiveTablet() {
+    device_ = folder_
+                  .write("tablet.umockdev", SimulatedTablet::usb_and_hid_devices() +
+                                                SimulatedTablet::hidraw_device() +
+                                                SimulatedTablet::event_device())
+                  .string();
+    hidraw_ = folder_.write("hidraw.ioctl", SimulatedTablet::hidraw_ioctls()).string();
+    event_ = folder_.write("event.ioctl", SimulatedTablet::event_ioctls({})).string();
+    // umockdev plays the first event at once, so that is none that counts.
+    std::string events = "E: 0.000000 0000 0000 0\n";
+    PenAction before;
+    for (int i = 0; i <= kSteps; ++i) {
+      const bool down = i > 1 && i < kSteps - 1;
+      const PenAction action{i < kSteps, down, false, 1000 + 100 * i, 2000, down ? 500 : 0};
+      for (const KernelEvent& event : SimulatedTablet::events(before, action)) {
+        char line[64];
+        std::snprintf(line, sizeof line, "E: 0.%06d %04x %04x %d\n", 200000 + 20000 * i, event.type,
+                      event.code, event.value);
+        events += line;
+      }
+      before = action;
+    }
+    events_ = folder_.write("events", events).string();
+  }
+
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  CommandRun limn(const std::string& words) const {
+    return run_shell("export ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0; " +
+                     std::string(kUmockdev) + " -d " + device_ + " -i " + SimulatedTablet::kHidraw +
+                     "=" + hidraw_ + " -i " + SimulatedTablet::kEvent + "=" + event_ + " -e " +
+                     SimulatedTablet::kEvent + "=" + events_ + " -- \"$0\" " + words);
+  }
+
+  static constexpr int kSteps = 10;
+
+ private:
+  TempFolder folder_;
+  std::string device_;
+  std::string hidraw_;
+  std::string event_;
+  std::string events_;
+};
+
+TEST_F(LiveDevices, DevicesListsBothSidesOfATablet) {
+  const LiveTablet tablet;
+  const CommandRun run = tablet.limn("devices --format json");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json rows = json::parse(run.out);
+  ASSERT_EQ(rows.size(), 2u) << run.out;
+  for (const json& row : rows) {
+    EXPECT_EQ(row["id"], "1209:0002");
+    EXPECT_EQ(row["name"], "Simulated Tablet");
+    EXPECT_NEAR(row["width_mm"], 105.3, 1e-9);
+    EXPECT_EQ(row["pressure_max"], 1023);
+    EXPECT_EQ(row["axes"], "x y pressure tilt_x tilt_y");
+    EXPECT_EQ(row["rate"], 200);
+    EXPECT_EQ(row["driver"], "hid-generic");
+    EXPECT_FALSE(row.contains("trouble"));
+  }
+  EXPECT_EQ(rows[0]["backend"], "hidraw");
+  EXPECT_EQ(rows[0]["kind"], "HID pen");
+  EXPECT_FALSE(rows[0].contains("same_as"));
+  EXPECT_EQ(rows[1]["backend"], "evdev");
+  EXPECT_EQ(rows[1]["kind"], "kernel pen");
+  EXPECT_EQ(rows[1]["same_as"], "/dev/hidraw0");
+}
+
+TEST_F(LiveDevices, DevicesFitsATerminal) {
+  const LiveTablet tablet;
+  const CommandRun run = tablet.limn("devices");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("105 x 53"));
+  EXPECT_THAT(run.out, HasSubstr("x y p t"));
+  EXPECT_THAT(run.out, HasSubstr("/dev/input/event300: the same device as /dev/hidraw0\n"));
+  std::istringstream lines(run.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+}
+
+TEST_F(LiveDevices, RecordsAnEventNodeAsEvemu) {
+  const LiveTablet tablet;
+  const std::string file = tablet.path("mine.evemu");
+  const CommandRun run =
+      tablet.limn(std::string("record ") + SimulatedTablet::kEvent + " --seconds 1.5 -o " + file);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr(" frames of 1 device in "));
+  const std::string text = read_file(file);
+  EXPECT_THAT(text, StartsWith("# EVEMU 1.3\nN: Simulated Tablet\nI: 0003 1209 0002 0100\n"
+                               "#limn R: "));
+  EXPECT_THAT(text, HasSubstr("\nA: 00 0 20000 0 0 190\n"));
+  const CommandRun decoded = run_limn({"decode", file, "--format", "jsonl"});
+  ASSERT_EQ(decoded.exit_code, 0) << decoded.err;
+  std::istringstream lines(decoded.out);
+  std::vector<json> samples;
+  for (std::string line; std::getline(lines, line);) samples.push_back(json::parse(line));
+  ASSERT_EQ(samples.size(), std::size_t{LiveTablet::kSteps + 1}) << decoded.out;
+  EXPECT_EQ(samples[0]["state"], "in_range");
+  EXPECT_EQ(samples[2]["state"], "in_contact");
+  EXPECT_EQ(samples[10]["state"], "out_of_range");
+  EXPECT_NEAR(samples[2]["x_mm"], 1200 * 105.3 / 20000, 1e-9) << "by the descriptor in the file";
+}
+
+TEST_F(LiveDevices, MonitorsAnEventNode) {
+  const LiveTablet tablet;
+  const CommandRun run = tablet.limn(std::string("monitor ") + SimulatedTablet::kEvent +
+                                     " --seconds 1.5 --format jsonl");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::istringstream lines(run.out);
+  json last;
+  for (std::string line; std::getline(lines, line);) last = json::parse(line);
+  EXPECT_EQ(last["id"], "1209:0002");
+  EXPECT_GE(last["reports"], LiveTablet::kSteps + 1);
+  EXPECT_EQ(last["lost"], 0);
+}
+
+TEST_F(LiveDevices, DoctorNamesTheDriverAndTheQueues) {
+  const LiveTablet tablet;
+  const std::string out = tablet.limn("doctor --format csv").out;
+  EXPECT_THAT(out, HasSubstr("good,/dev/hidraw0,Linux's driver hid-generic has it"));
+  EXPECT_THAT(out, HasSubstr("good,/dev/input/event300,Simulated Tablet"));
+  EXPECT_THAT(out, HasSubstr("good,queues,"));
+}
+
 TEST_F(LiveDevices, DevicesNamesPensWithSizeAndNode) {
   const SimulatedPen pen(0);
   const CommandRun run = pen.limn("devices --format json");
@@ -141,7 +269,8 @@ TEST_F(LiveDevices, DoctorLooksAtEachNode) {
   EXPECT_EQ(rows[0]["state"], "good");
   EXPECT_EQ(rows[0]["subject"], "/dev/hidraw0");
   EXPECT_EQ(rows[0]["what"], "Small Pen");
-  EXPECT_EQ(rows[1]["subject"], "udev rules");
+  EXPECT_EQ(rows[1]["what"], "Linux's driver hid-generic has it");
+  EXPECT_EQ(rows[2]["subject"], "udev rules");
 }
 
 TEST_F(LiveDevices, RecordsWhatComesAsAFileThatDecodes) {

@@ -307,18 +307,14 @@ TEST(OpenDevice, SaysWhatIsWrong) {
     EXPECT_EQ(opened.error().what, "cannot be opened: No such file or directory");
     EXPECT_EQ(opened.error().remedy, "plug the device in and see 'limn devices'");
   }
-  gone.backend = Backend::kUsb;
-  EXPECT_EQ(open_device(gone).error().code, ErrorCode::kMissing);
 }
 
-TEST(OpenNode, TellsNodesApartByTheirNames) {
+TEST(BackendOfNode, TellsNodesApartByTheirNames) {
   const TempFolder folder;
-  folder.write("event3", "");
-  folder.write("hidraw3", "");
-  EXPECT_EQ(open_node(folder.path() / "event3").error().what, "is no event node");
-  EXPECT_EQ(open_node(folder.path() / "hidraw3").error().what, "is no hidraw node");
-  EXPECT_EQ(open_node("/dev/input/event-absent").error().what,
-            "cannot be opened: No such file or directory");
+  EXPECT_EQ(backend_of_node(folder.write("event3", "")), Backend::kEvdev);
+  EXPECT_EQ(backend_of_node(folder.write("hidraw3", "")), Backend::kHidraw);
+  EXPECT_EQ(backend_of_node("/dev/input/event-absent"), Backend::kEvdev);
+  EXPECT_EQ(backend_of_node("/dev/bus/usb/001/004"), Backend::kUsb);
 }
 
 }  // namespace
