@@ -11,12 +11,12 @@
 #include "drivers/devices/device_traits.hpp"
 #include "drivers/devices/trace_decoder.hpp"
 #include "drivers/transport/paced_reader.hpp"
-#include "input/trace/noted_loss.hpp"
 #include "modeler/app/command.hpp"
 #include "modeler/app/live_input.hpp"
 #include "modeler/app/report_timing.hpp"
 #include "modeler/app/standard_output.hpp"
 #include "modeler/app/table.hpp"
+#include "modeler/app/trace_input.hpp"
 
 namespace limn::app {
 namespace {
@@ -28,8 +28,8 @@ struct Watched {
   std::string id;
   ReportTiming timing;
   DurationStatistics latency;  // from a report's time to its sample
-  std::uint64_t lost = 0;
-  bool lost_estimated = false;
+  StreamLosses losses;
+  std::uint64_t repaired = 0;
   bool gone = false;
   bool mouse = false;  // a 3D mouse: no samples yet
   std::optional<PenSample> last;
@@ -92,10 +92,6 @@ class WatchingReader final : public TraceReader {
   void count(const TraceNote& note) {
     Watched& device = devices[note.device];
     device.gone |= note.text == "gone";
-    if (const auto loss = noted_loss(note.text)) {
-      device.lost += loss->count;
-      device.lost_estimated |= loss->estimated;
-    }
   }
   template <class Other>
   void count(const Other&) {}
@@ -138,12 +134,13 @@ std::string describe(const Watched& device) {
   }
   const DurationStatistics& intervals = device.timing.intervals();
   std::snprintf(line, sizeof line,
-                "\n  %llu reports, %.1f a second, interval %.3f ms, jitter %.3f ms, %s%llu lost",
+                "\n  %llu reports, %.1f a second, interval %.3f ms, jitter %.3f ms",
                 static_cast<unsigned long long>(device.timing.reports()), device.timing.rate(),
-                intervals.mean_ms(), intervals.deviation_ms(),
-                device.lost_estimated ? "at least " : "",
-                static_cast<unsigned long long>(device.lost));
+                intervals.mean_ms(), intervals.deviation_ms());
   text += line;
+  const std::string losses = losses_text(device.losses);
+  text += losses.empty() ? ", 0 lost" : losses;
+  if (device.repaired > 0) text += ", " + count_of(device.repaired, "repaired state transition");
   text += "\n  intervals 1/16 ms .. 64 ms " + bars(intervals);
   std::snprintf(line, sizeof line, "  latency %.3f ms, longest %.3f ms ", device.latency.mean_ms(),
                 to_seconds(device.latency.longest()) * 1e3);
@@ -164,7 +161,12 @@ Outcome run_monitor(const MonitorArguments& arguments) {
                             : Timestamp::max();
   std::size_t lines = 0;
   Outcome written;
+  const TraceDecoder* decoding = nullptr;
   const auto show = [&](std::map<DeviceIndex, Watched>& devices) {
+    for (const TraceDeviceSummary& seen : decoding->summary().devices) {
+      devices[seen.index].losses = seen.losses;
+      devices[seen.index].repaired = seen.repaired_transitions;
+    }
     std::string text;
     if (arguments.format == OutputFormat::kText) {
       if (redraws && lines > 0) text += "\033[" + std::to_string(lines) + "A\033[J";
@@ -185,14 +187,22 @@ Outcome run_monitor(const MonitorArguments& arguments) {
                    {"latency_max_ms", "longest"},
                    {"lost", "lost"},
                    {"lost_estimated", "estimated"},
-                   {"gone", "gone"}});
+                   {"gone", "gone"},
+                   {"overruns", "overruns"},
+                   {"gaps", "gaps"},
+                   {"resets", "resets"},
+                   {"repaired", "repaired"},
+                   {"clock_jumps", "jumps"}});
       for (const auto& [index, d] : devices) {
         const auto& intervals = d.timing.intervals();
-        table.add({to_seconds(monotonic_clock().now() - start), std::int64_t{index}, d.id, d.name,
-                   static_cast<std::int64_t>(d.timing.reports()), d.timing.rate(),
-                   intervals.mean_ms(), intervals.deviation_ms(), d.latency.mean_ms(),
-                   to_seconds(d.latency.longest()) * 1e3, static_cast<std::int64_t>(d.lost),
-                   d.lost_estimated, d.gone});
+        table.add(
+            {to_seconds(monotonic_clock().now() - start), std::int64_t{index}, d.id, d.name,
+             static_cast<std::int64_t>(d.timing.reports()), d.timing.rate(), intervals.mean_ms(),
+             intervals.deviation_ms(), d.latency.mean_ms(), to_seconds(d.latency.longest()) * 1e3,
+             static_cast<std::int64_t>(d.losses.lost), d.losses.lost_estimated, d.gone,
+             static_cast<std::int64_t>(d.losses.overruns), static_cast<std::int64_t>(d.losses.gaps),
+             static_cast<std::int64_t>(d.losses.resets), static_cast<std::int64_t>(d.repaired),
+             static_cast<std::int64_t>(d.losses.clock_jumps)});
       }
       text = table.print(arguments.format);
     }
@@ -203,6 +213,7 @@ Outcome run_monitor(const MonitorArguments& arguments) {
   auto watching = std::make_unique<WatchingReader>(**live, period, end, show);
   WatchingReader& watched = *watching;
   TraceDecoder decoder(std::move(watching), {.salvage = true});
+  decoding = &decoder;
   for (;;) {
     auto sample = decoder.next();
     if (!sample) return in_file("", Expected<void>(tl::unexpected(sample.error())));

@@ -28,8 +28,7 @@ constexpr Timestamp kProgressPeriod = 200ms;
 struct Counts {
   std::uint64_t reports = 0;
   std::uint64_t frames = 0;
-  std::uint64_t lost = 0;
-  bool lost_estimated = false;
+  StreamLosses losses;  // as far as the devices' transports tell
   std::uint64_t devices = 0;
 };
 
@@ -66,9 +65,11 @@ class Recorder {
   }
   Expected<void> operator()(const TraceNote& note) {
     if (const auto loss = noted_loss(note.text)) {
-      counts_.lost += loss->count;
-      counts_.lost_estimated |= loss->estimated;
+      counts_.losses.lost += loss->count;
+      counts_.losses.lost_estimated |= loss->estimated;
+      ++counts_.losses.overruns;
     }
+    if (note.text == "gone") ++counts_.losses.resets;
     if (!evemu_) return reports_.note(note.text, note.device);
     return noted_loss(note.text) ? frames_.lost() : Expected<void>();
   }
@@ -96,14 +97,10 @@ class Recorder {
 std::string summarise(const Counts& counts, Timestamp duration) {
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%.1f s", to_seconds(duration));
-  std::string text =
-      (counts.frames > 0 ? count_of(counts.frames, "frame") : count_of(counts.reports, "report")) +
-      " of " + count_of(counts.devices, "device") + " in " + seconds;
-  if (counts.lost > 0) {
-    text += counts.lost_estimated ? ", at least " : ", ";
-    text += std::to_string(counts.lost) + " lost";
-  }
-  return text;
+  return (counts.frames > 0 ? count_of(counts.frames, "frame")
+                            : count_of(counts.reports, "report")) +
+         " of " + count_of(counts.devices, "device") + " in " + seconds +
+         losses_text(counts.losses);
 }
 
 }  // namespace

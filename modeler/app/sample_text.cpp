@@ -60,6 +60,15 @@ void for_buttons(const PenSample& sample, Each each) {
   }
 }
 
+/// Calls `each(name)` for every disturbance.
+template <class Each>
+void for_disturbances(const PenSample& sample, Each each) {
+  for (unsigned i = 0; i < kDisturbanceCount; ++i) {
+    const auto one = static_cast<Disturbance>(1U << i);
+    if (sample.disturbances.has(one)) each(name(one));
+  }
+}
+
 }  // namespace
 
 void SampleText::begin(std::string& out) const {
@@ -77,7 +86,7 @@ void SampleText::begin(std::string& out) const {
     case OutputFormat::kCsv:
       out +=
           "t,device,tool,state,x_mm,y_mm,pressure,tilt_x_deg,tilt_y_deg,twist_deg,distance,"
-          "buttons,serial,lost,raw.x,raw.y,raw.pressure\n";
+          "buttons,serial,lost,raw.x,raw.y,raw.pressure,lost_estimated,disturbances\n";
       break;
   }
 }
@@ -146,6 +155,16 @@ void SampleText::append_json(const PenSample& sample, std::string& out) const {
   }
   out += ",\"lost\":";
   append_number(sample.lost, out);
+  if (sample.lost_estimated) out += ",\"lost_estimated\":true";
+  if (!sample.disturbances.empty()) {
+    std::string_view separator = ",\"disturbances\":[\"";
+    for_disturbances(sample, [&](std::string_view disturbance) {
+      out += separator;
+      out += disturbance;
+      separator = "\",\"";
+    });
+    out += "\"]";
+  }
   if (with_raw_ && (axes.has_position() || axes.has(PenAxis::kPressure))) {
     std::string_view separator = ",\"raw\":{";
     const auto count = [&](PenAxis axis, std::string_view key, std::int32_t value) {
@@ -197,6 +216,13 @@ void SampleText::append_csv(const PenSample& sample, std::string& out) const {
   cell(with_raw_ && axes.has(PenAxis::kX), sample.raw.x);
   cell(with_raw_ && axes.has(PenAxis::kY), sample.raw.y);
   cell(with_raw_ && axes.has(PenAxis::kPressure), sample.raw.pressure);
+  out += sample.lost_estimated ? ",true," : ",,";
+  first = true;
+  for_disturbances(sample, [&](std::string_view disturbance) {
+    if (!first) out += ' ';
+    out += disturbance;
+    first = false;
+  });
   out += '\n';
 }
 
@@ -223,7 +249,14 @@ void SampleText::append_line(const PenSample& sample, std::string& out) const {
     out += ' ';
     out += button;
   });
-  if (sample.lost > 0) append(std::snprintf(text.data(), text.size(), " lost %u", sample.lost));
+  if (sample.lost > 0) {
+    append(std::snprintf(text.data(), text.size(), sample.lost_estimated ? " lost>=%u" : " lost %u",
+                         sample.lost));
+  }
+  for_disturbances(sample, [&](std::string_view disturbance) {
+    out += " !";
+    out += disturbance;
+  });
   out += '\n';
 }
 

@@ -95,12 +95,29 @@ std::string summarise(const TraceSummary& summary) {
   const auto add = [&text](std::uint64_t count, std::string_view what) {
     if (count > 0) text += ", " + count_of(count, what);
   };
+  text += losses_text(summary.losses());
   add(summary.repaired_transitions(), "repaired state transition");
   add(summary.damaged_parts, "damaged part");
   std::uint64_t undecodable = 0;
   for (const TraceDeviceSummary& device : summary.devices)
     undecodable += device.undecodable_reports;
   add(undecodable, "undecodable report");
+  return text;
+}
+
+std::string losses_text(const StreamLosses& losses) {
+  std::string text;
+  if (losses.lost > 0) {
+    text += losses.lost_estimated ? ", at least " : ", ";
+    text += std::to_string(losses.lost) + " lost";
+  }
+  const auto add = [&text](std::uint64_t count, std::string_view what) {
+    if (count > 0) text += ", " + count_of(count, what);
+  };
+  add(losses.overruns, "queue overrun");
+  add(losses.gaps, "gap");
+  add(losses.resets, "reset");
+  add(losses.clock_jumps, "clock jump");
   return text;
 }
 

@@ -16,8 +16,12 @@ namespace limn::app {
 tl::expected<std::unique_ptr<TraceReader>, Failure> open_trace_input(
     const TraceArguments& arguments);
 
-/// What a decoded recording held, for people: "2100 samples, 2 repaired state transitions".
+/// What a decoded recording held, for people: "2100 samples, 5 lost, 1 gap, 2 repaired state
+/// transitions". What there was none of is left out.
 std::string summarise(const TraceSummary& summary);
+
+/// ", at least 5 lost, 1 gap", to be appended; empty where nothing disturbed the stream.
+std::string losses_text(const StreamLosses& losses);
 
 /// "1 sample", "2 samples".
 std::string count_of(std::uint64_t count, std::string_view what);

@@ -60,9 +60,32 @@ TEST(Decode, CsvHasTheSameNamesAsColumns) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out,
               StartsWith("t,device,tool,state,x_mm,y_mm,pressure,tilt_x_deg,tilt_y_deg,twist_deg,"
-                         "distance,buttons,serial,lost,raw.x,raw.y,raw.pressure\n"
-                         "0,0,pen,in_range,10,20,,,,,,,,0,100,200,\n"
-                         "0.01,0,pen,in_contact,10,20,,,,,,,,0,100,200,\n"));
+                         "distance,buttons,serial,lost,raw.x,raw.y,raw.pressure,lost_estimated,"
+                         "disturbances\n"
+                         "0,0,pen,in_range,10,20,,,,,,,,0,100,200,,,\n"
+                         "0.01,0,pen,in_contact,10,20,,,,,,,,0,100,200,,,\n"));
+}
+
+TEST(Decode, DisturbancesAreFieldsOfTheNextSampleAndCounted) {
+  // A Graphire, whose pen enters in contact after a queue overran.
+  const std::string recording =
+      "N: a\nI: 3 056a 0013\n#limn lost? 64\nE: 3.0 8 02 91 40 1f 20 03 ff 01\n";
+  const CommandRun lines = run_limn({"decode", "-", "--format", "jsonl"}, recording);
+  ASSERT_EQ(lines.exit_code, 0) << lines.err;
+  const auto samples = parse_lines(lines.out);
+  ASSERT_EQ(samples.size(), 2u);
+  EXPECT_EQ(samples[0]["lost"], 64);
+  EXPECT_EQ(samples[0]["lost_estimated"], true);
+  EXPECT_EQ(samples[0]["disturbances"], json::array({"overrun", "repaired"}));
+  EXPECT_EQ(samples[1]["lost"], 0);
+  EXPECT_FALSE(samples[1].contains("disturbances"));
+  EXPECT_FALSE(samples[1].contains("lost_estimated"));
+  EXPECT_EQ(lines.err,
+            "2 samples, at least 64 lost, 1 queue overrun, 1 repaired state transition\n");
+  const CommandRun csv = run_limn({"decode", "-", "--format", "csv"}, recording);
+  EXPECT_THAT(csv.out, HasSubstr(",true,overrun repaired\n"));
+  const CommandRun text = run_limn({"decode", "-"}, recording);
+  EXPECT_THAT(text.out, HasSubstr(" lost>=64 !overrun !repaired\n"));
 }
 
 TEST(Decode, TextIsOneLineASample) {
