@@ -182,10 +182,13 @@ struct Case {
 /// Ids of the tablets whose dumps have none, by their folders.
 const std::map<std::string, Ids, std::less<>>& dumped_tablets() {
   static const std::map<std::string, Ids, std::less<>> tablets = {
-      {"Huion_K26", {0x256C, 0x006E}},          {"Huion_New_1060_Plus", {0x256C, 0x006E}},
-      {"Huion_W58", {0x256C, 0x006E}},          {"KYE_PenSketch_M912", {0x0458, 0x5015}},
+      {"Huion_K26", {0x256C, 0x006E}},
+      {"Huion_New_1060_Plus", {0x256C, 0x006E}},
+      {"Huion_W58", {0x256C, 0x006E}},
+      {"KYE_PenSketch_M912", {0x0458, 0x5015}},
       {"Ugee_M708_v2", {0x28BD, 0x0907}},
-      {"VEIKK_A30", {0x2FEB, 0x0002}},          {"XP-Pen_Deco_01_v2_revb", {0x28BD, 0x0905}},
+      {"VEIKK_A30", {0x2FEB, 0x0002}},
+      {"XP-Pen_Deco_01_v2_revb", {0x28BD, 0x0905}},
       {"XP-Pen_Star_06", {0x28BD, 0x0078}}};
   return tablets;
 }

@@ -59,6 +59,8 @@ void expect_sound(const DecodedTrace& trace) {
     ASSERT_LE(sample.pressure, 1);
     ASSERT_EQ(sample.lost, 0U) << "nothing tells of losses here";
   }
+  EXPECT_EQ(trace.summary.losses().gaps, 0U);
+  EXPECT_EQ(trace.summary.losses().clock_jumps, 0U);
 }
 
 struct Recording {

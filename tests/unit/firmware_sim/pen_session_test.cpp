@@ -264,6 +264,36 @@ TEST_P(EachDrawing, TheDriverNeedsToRepairNothing) {
   }
 }
 
+TEST_P(EachDrawing, ReportsTakenOutAreCountedByTheScanTime) {
+  // In the middle of the longest time without landing, lifting or leaving.
+  std::size_t first = 0, length = 0, begin = 0;
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const bool same = i > 0 && seen_[i].in_range && seen_[i - 1].in_range &&
+                      seen_[i].touching() == seen_[i - 1].touching();
+    if (!same) begin = i;
+    if (i - begin + 1 > length) {
+      first = begin;
+      length = i - begin + 1;
+    }
+  }
+  ASSERT_GE(length, 40U);
+  for (const std::size_t taken : {1U, 2U, 9U}) {
+    auto decoder = PenDecoder::make(HidPen::kIdentity.vendor, HidPen::kIdentity.product,
+                                    HidPen::report_descriptor());
+    ASSERT_TRUE(decoder) << decoder.error().what;
+    const std::size_t from = first + length / 2;
+    std::vector<std::uint32_t> lost;
+    for (std::size_t i = 0; i < reports_.size(); ++i) {
+      if (i >= from && i < from + taken) continue;
+      decoder->decode(Report{0, reports_[i].time, reports_[i].bytes}, [&](const PenSample& sample) {
+        if (!sample.disturbances.empty()) lost.push_back(sample.lost);
+        EXPECT_FALSE(sample.lost_estimated);
+      });
+    }
+    EXPECT_THAT(lost, testing::ElementsAre(taken)) << "and nothing else";
+  }
+}
+
 TEST(PenSession, TheBytesAreTheSameOnEveryMachine) {
   // A change of any drawing, of the hand or of the noise changes these, and says so in its commit.
   const std::map<std::string, std::uint64_t> expected = {
