@@ -61,9 +61,9 @@ struct TraceDecoderOptions {
 /// Trace -> PenSamples of all its devices, in file order, pulled one by one. Sample times are the
 /// file's minus that of its first report, frame or sample. What the trace tells of missing reports
 /// (TraceDamage, "lost N" notes) and of replugs is told with their device's next sample, and so are
-/// gaps and clocks that jump (LossTracker); a "gone" note takes what is in range out of it; "string"
-/// notes before its first report are what the device answered when it was initialised, and its
-/// decoder goes by them. Constant memory.
+/// gaps and clocks that jump (LossTracker); a "gone" note takes what is in range out of it;
+/// "string" notes before its first report are what the device answered when it was initialised, and
+/// its decoder goes by them. Constant memory.
 ///
 /// A pen that leaves silently (PenDecoder) leaves before its device's next report, or at the end,
 /// or as soon as a reader that waits says that it was silent for so long (next_until): what each

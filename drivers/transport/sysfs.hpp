@@ -36,7 +36,11 @@ class SysfsDevice {
   std::uint16_t hexadecimal(const std::string& name) const;
   /// A value of the uevent file.
   std::string property(std::string_view key) const;
-  std::string driver() const { return link("driver"); }
+  /// By its link, else by the uevent file, which says the same.
+  std::string driver() const {
+    std::string linked = link("driver");
+    return linked.empty() ? property("DRIVER") : linked;
+  }
   std::string subsystem() const { return link("subsystem"); }
 
   /// The nearest device above (not this one) of a subsystem, and of a DEVTYPE where one is given.
