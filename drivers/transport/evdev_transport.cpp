@@ -53,7 +53,7 @@ class EvdevTransport final : public Transport {
   void tell_whole_state() noexcept override { whole_ = true; }
 
   State drain(TransportSink& sink) noexcept override {
-    for (;;) {
+    for (int given = 0; given < kMostEvents; ++given) {
       input_event event{};
       const int status = libevdev_next_event(evdev_.get(), LIBEVDEV_READ_FLAG_NORMAL, &event);
       if (status == LIBEVDEV_READ_STATUS_SUCCESS) {
@@ -66,6 +66,7 @@ class EvdevTransport final : public Transport {
         return State::kGone;
       }
     }
+    return State::kMore;  // libevdev may have read ahead
   }
 
  private:
@@ -141,7 +142,8 @@ class EvdevTransport final : public Transport {
     }
   }
 
-  static constexpr std::size_t kMostPassing = 64;  // serials and scan codes of one frame
+  static constexpr int kMostEvents = kMostReports * 16;  // more than pens change at once
+  static constexpr std::size_t kMostPassing = 64;        // serials and scan codes of one frame
 
   FileHandle file_;
   Device evdev_;

@@ -14,22 +14,18 @@ namespace limn {
 ///
 /// The kernel tells changes only, so whoever comes later must be told the state:
 ///
-///     the first frame     is the whole state, as it is then: every key, every axis but those of
-///                         multi-touch slots. A pen that rested in range when limn came is seen
-///                         with all its axes as soon as anything about it changes.
-///     SYN_DROPPED         (the kernel's queue overran) libevdev asks the kernel for the state;
-///     what
-///                         differs comes as one frame, together with what had come of the torn one,
-///                         behind lost(1, true). No frame holds a SYN_DROPPED, so a decoder need
-///                         not wait for a state that it has already, nor count the loss again.
-///     tell_whole_state(), or a frame of more than kMaxFrameEvents events (its loss is told as
-///                         above): the next frame is the whole state again
+///   - The first frame is the whole state, as it is then: every key, every axis but those of
+///     multi-touch slots. A pen that rested in range when limn came is seen with all its axes as
+///     soon as anything about it changes.
+///   - SYN_DROPPED (the kernel's queue overran): libevdev asks the kernel for the state. What
+///     differs comes as one frame, together with what had come of the torn one, behind
+///     lost(1, true). No frame holds a SYN_DROPPED, so a decoder need not wait for a state that it
+///     has already, nor count the loss again.
+///   - tell_whole_state(), or a frame of more than kMaxFrameEvents events (its loss is told as
+///     above): the next frame is the whole state again.
 ///
 /// The device's report descriptor comes from sysfs, where a HID device is behind the node: the
 /// kernel's own sizes are rounded (see EvdevPenDecoder).
-///
-/// A drain goes on until the kernel has nothing more, however much a device floods: libevdev reads
-/// ahead, where poll does not look.
 ///
 /// Errors: kIo: no such node, no permission, held by another program for itself alone, no event
 /// node; kMissing in a build without libevdev.

@@ -60,7 +60,7 @@ Expected<std::unique_ptr<Transport>> open_hidraw(const std::string& node) {
   int size = 0;
   if (::ioctl(file.get(), HIDIOCGRAWINFO, &info) < 0 ||
       ::ioctl(file.get(), HIDIOCGRDESCSIZE, &size) < 0) {
-    if (errno == ENOTTY || errno == EINVAL) {
+    if (errno == ENOTTY || errno == EINVAL || errno == ENOSYS) {  // the last from qemu-user
       return fail(ErrorCode::kIo, node, "is no hidraw node", "give one that 'limn devices' names");
     }
     return node_error(node, "opened", errno);

@@ -58,6 +58,7 @@ class LiveReader::Reading {
   struct Slot {
     std::unique_ptr<Transport> transport;  // nothing while the device is away
     std::shared_ptr<const TraceDevice> device;
+    bool more = false;          // it has more than poll may show
     std::uint32_t dropped = 0;  // not told yet
     bool dropped_estimated = false;
   };
@@ -137,11 +138,13 @@ class LiveReader::Reading {
         owners.push_back(i);
       }
       if (owners.empty() && !hotplug_) break;
-      if (::poll(polled.data(), polled.size(), -1) < 0 && errno != EINTR) break;
+      const bool more =
+          std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.more; });
+      if (::poll(polled.data(), polled.size(), more ? 0 : -1) < 0 && errno != EINTR) break;
       in_round_.store(true);
       if (polled[0].revents != 0) clear_descriptor(wake_.get());
       for (std::size_t k = 0; k < owners.size(); ++k) {
-        if (polled[first + k].revents != 0) drain(owners[k]);
+        if (polled[first + k].revents != 0 || slots_[owners[k]].more) drain(owners[k]);
       }
       if (hotplug_ && polled[1].revents != 0) {
         for (auto& device : hotplug_->arrived()) {
@@ -161,7 +164,9 @@ class LiveReader::Reading {
   void drain(DeviceIndex index) noexcept {
     Slot& slot = slots_[index];
     Sink sink(*this, index);
-    if (slot.transport->drain(sink) == Transport::State::kOpen) return;
+    const Transport::State state = slot.transport->drain(sink);
+    slot.more = state == Transport::State::kMore;
+    if (state != Transport::State::kGone) return;
     slot.transport.reset();
     if (slot.dropped > 0) push_control(take_loss(index));
     push_control({RecordKind::kGone, index, monotonic_clock().now().count()});

@@ -34,11 +34,12 @@ class Transport {
   /// Readable (poll) when drain() has something to do.
   virtual int poll_descriptor() const noexcept = 0;
 
-  enum class State { kOpen, kGone };
+  enum class State { kOpen, kMore, kGone };
 
   /// Gives what has come, without waiting, until there is no more or a device that floods has had
-  /// its share of kMostReports. Allocates nothing. kGone: the device went away; only destruction
-  /// makes sense then.
+  /// its share of kMostReports. Allocates nothing. kMore: there is more, which the poll descriptor
+  /// need not show; drain again when others have had their turn. kGone: the device went away; only
+  /// destruction makes sense then.
   virtual State drain(TransportSink& sink) noexcept = 0;
 
   /// What was given since the last drain() did not all arrive: where reports tell changes only, the

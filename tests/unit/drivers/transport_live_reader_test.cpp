@@ -401,6 +401,39 @@ TEST(OpenMessages, AFloodHasNoMoreThanItsShare) {
   EXPECT_EQ(sink.reports, Transport::kMostReports);
 }
 
+/// Has read three reports ahead of its descriptor, which shows one only.
+class ReadingAhead final : public Transport {
+ public:
+  explicit ReadingAhead(int descriptor) : descriptor_(descriptor), device_(pen()) {}
+  ~ReadingAhead() override { ::close(descriptor_); }
+  const TraceDevice& device() const noexcept override { return device_; }
+  int poll_descriptor() const noexcept override { return descriptor_; }
+  State drain(TransportSink& sink) noexcept override {
+    std::uint8_t byte = 0;
+    if (::recv(descriptor_, &byte, 1, MSG_DONTWAIT) == 1) left_ = 3;
+    if (left_ == 0) return State::kOpen;
+    sink.report(monotonic_clock().now(), {&left_, 1});
+    --left_;
+    return left_ > 0 ? State::kMore : State::kOpen;
+  }
+
+ private:
+  int descriptor_;
+  TraceDevice device_;
+  std::uint8_t left_ = 0;
+};
+
+TEST(LiveReader, DrainsWhatATransportHasReadAhead) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends), 0);
+  const auto reader = start(std::make_unique<ReadingAhead>(ends[1]));
+  ASSERT_EQ(::write(ends[0], "x", 1), 1);
+  std::vector<std::string> told;
+  for (int i = 0; i < 4; ++i) told.push_back(text_of(*reader->next()));
+  EXPECT_THAT(told, ElementsAre("described 0 A Pen", "report 0 3", "report 0 2", "report 0 1"));
+  ::close(ends[0]);
+}
+
 TEST(LiveReader, ADeviceThatComesBackKeepsItsIndex) {
   std::unique_ptr<Transport> transport;
   FarEnd device(pen(), transport);
