@@ -23,7 +23,7 @@ void StreamLosses::add(const StreamLosses& other) noexcept {
 }
 
 void LossTracker::overrun(std::uint32_t count, bool estimated) noexcept {
-  if (count == 0) return;
+  if (count == 0 && !estimated) return;
   ++losses_.overruns;
   tell(count, estimated, Disturbance::kOverrun);
 }
@@ -60,14 +60,20 @@ void LossTracker::reset() noexcept {
 }
 
 void LossTracker::complete(PenSample& sample, bool paced) noexcept {
+  const std::uint32_t told = std::exchange(lost_, 0);
+  const bool told_estimated = std::exchange(estimated_, false);
+  if (sample.disturbances.has(Disturbance::kGap) && sample.lost <= told) {
+    sample.disturbances.remove(Disturbance::kGap);  // it is what was told of already
+  }
   if (sample.disturbances.has(Disturbance::kOverrun)) ++losses_.overruns;
   if (sample.disturbances.has(Disturbance::kGap)) ++losses_.gaps;
   if (sample.disturbances.has(Disturbance::kClockJump)) ++losses_.clock_jumps;
-  losses_.lost += sample.lost;
+  // What the device counts holds what was told of it.
+  const std::uint32_t counted = sample.lost;
+  sample.lost = std::max(counted, told);
+  losses_.lost += sample.lost - told;
   losses_.lost_estimated |= sample.lost_estimated;
-
-  sample.lost = saturated_sum(sample.lost, std::exchange(lost_, 0));
-  sample.lost_estimated |= std::exchange(estimated_, false);
+  sample.lost_estimated |= told_estimated && told >= counted;
   sample.disturbances.add(std::exchange(disturbances_, {}));
   if (last_ && sample.time < last_->time && !sample.disturbances.has(Disturbance::kClockJump)) {
     ++losses_.clock_jumps;

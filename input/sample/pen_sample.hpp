@@ -82,6 +82,9 @@ class Disturbances {
   constexpr void add(Disturbances others) noexcept {
     bits_ = static_cast<std::uint8_t>(bits_ | others.bits_);
   }
+  constexpr void remove(Disturbance one) noexcept {
+    bits_ = static_cast<std::uint8_t>(bits_ & ~static_cast<std::uint8_t>(one));
+  }
   constexpr bool empty() const noexcept { return bits_ == 0; }
   constexpr std::uint8_t bits() const noexcept { return bits_; }
   friend constexpr bool operator==(Disturbances, Disturbances) = default;

@@ -195,11 +195,43 @@ TEST_F(PacedTracker, ANewPaceIsLearned) {
   EXPECT_EQ(tracker_.losses().gaps, 4U);
 }
 
+TEST_F(PacedTracker, WhatTheDeviceCountsHoldsWhatWasToldOfIt) {
+  const auto counted = [this](std::uint32_t lost) {
+    last_.time += 4ms;
+    PenSample sample = last_;
+    sample.lost = lost;
+    sample.disturbances.add(Disturbance::kGap);
+    tracker_.complete(sample, true);
+    return sample;
+  };
+  tracker_.overrun(5, false);
+  const PenSample same = counted(5);
+  EXPECT_EQ(same.lost, 5U);
+  EXPECT_EQ(same.disturbances, Disturbance::kOverrun);
+  tracker_.overrun(2, true);
+  const PenSample more = counted(7);
+  EXPECT_EQ(more.lost, 7U);
+  EXPECT_FALSE(more.lost_estimated) << "the device counted them";
+  EXPECT_TRUE(more.disturbances.has(Disturbance::kGap));
+  EXPECT_EQ(tracker_.losses().lost, 12U);
+  EXPECT_EQ(tracker_.losses().overruns, 2U);
+  EXPECT_EQ(tracker_.losses().gaps, 1U);
+}
+
+TEST_F(PacedTracker, AFullQueueThatMayHaveDroppedNoneIsAnOverrun) {
+  tracker_.overrun(0, true);
+  const PenSample after = next(4ms, 0.1);
+  EXPECT_EQ(after.lost, 0U);
+  EXPECT_TRUE(after.lost_estimated);
+  EXPECT_EQ(after.disturbances, Disturbance::kOverrun);
+  EXPECT_EQ(tracker_.losses().overruns, 1U);
+}
+
 TEST_F(PacedTracker, TellsEverythingOnceWithTheNextSample) {
   tracker_.described();
   write(1);
   tracker_.overrun(3, false);
-  tracker_.overrun(0, true);
+  tracker_.overrun(0, false);
   tracker_.damage(2, true);
   tracker_.gone();
   tracker_.described();
