@@ -33,7 +33,7 @@ class MessageTransport final : public Transport {
       if (size <= 0) return State::kGone;
       const Timestamp now = monotonic_clock().now();
       sink.report(now, {buffer_.data(), static_cast<std::size_t>(size)});
-      if (count + 1 == queue_) sink.lost(1, true);
+      if (count + 1 == queue_) sink.lost(0, true);
     }
     return State::kOpen;
   }
@@ -41,7 +41,7 @@ class MessageTransport final : public Transport {
  private:
   FileHandle file_;
   TraceDevice device_;
-  int queue_;  // reports that the kernel keeps; 0: it waits for us instead
+  int queue_;  // reports that the other end keeps; 0: it waits for us instead
   std::array<std::uint8_t, kMaxReportBytes> buffer_;
 };
 
@@ -81,13 +81,13 @@ Expected<std::unique_ptr<Transport>> open_hidraw(const std::string& node) {
   device.vendor = static_cast<std::uint16_t>(info.vendor);
   device.product = static_cast<std::uint16_t>(info.product);
   device.report_descriptor.assign(descriptor.value, descriptor.value + size);
-  constexpr int kHidrawQueue = 64;  // HIDRAW_BUFFER_SIZE
+  constexpr int kHidrawQueue = 63;  // HIDRAW_BUFFER_SIZE is 64, of which one stays empty
   return std::make_unique<MessageTransport>(std::move(file), std::move(device), kHidrawQueue);
 }
 
-std::unique_ptr<Transport> open_messages(int descriptor, TraceDevice device) {
+std::unique_ptr<Transport> open_messages(int descriptor, TraceDevice device, int queue) {
   ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
-  return std::make_unique<MessageTransport>(FileHandle(descriptor), std::move(device), 0);
+  return std::make_unique<MessageTransport>(FileHandle(descriptor), std::move(device), queue);
 }
 
 }  // namespace limn

@@ -61,6 +61,8 @@ class LiveReader::Reading {
     bool more = false;          // it has more than poll may show
     std::uint32_t dropped = 0;  // not told yet
     bool dropped_estimated = false;
+
+    bool owes_loss() const noexcept { return dropped > 0 || dropped_estimated; }
   };
 
   Expected<void> start(std::vector<std::unique_ptr<Transport>> devices,
@@ -155,7 +157,7 @@ class LiveReader::Reading {
       signal_descriptor(ready_.get());
     }
     for (DeviceIndex i = 0; i < slots_.size(); ++i) {
-      if (slots_[i].dropped > 0) push_control(take_loss(i));
+      if (slots_[i].owes_loss()) push_control(take_loss(i));
     }
     push_control({RecordKind::kEnd, 0, 0});
     signal_descriptor(ready_.get());
@@ -168,7 +170,7 @@ class LiveReader::Reading {
     slot.more = state == Transport::State::kMore;
     if (state != Transport::State::kGone) return;
     slot.transport.reset();
-    if (slot.dropped > 0) push_control(take_loss(index));
+    if (slot.owes_loss()) push_control(take_loss(index));
     push_control({RecordKind::kGone, index, monotonic_clock().now().count()});
   }
 
@@ -211,7 +213,7 @@ class LiveReader::Reading {
 
   void push_data(RecordHead head, const void* data, std::size_t size) noexcept {
     Slot& slot = slots_[head.device];
-    if (slot.dropped > 0) {
+    if (slot.owes_loss()) {
       if (ring_.reserve(2 * sizeof head + size + kControlBytes).empty()) {
         drop(slot);
         return;

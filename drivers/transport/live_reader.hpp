@@ -19,7 +19,7 @@ namespace limn {
 /// them:
 ///
 ///   - "lost N": N reports of the device are missing here: the ring was full, or the device says so
-///   - "lost? N": some are missing, at least N: nobody counts them
+///   - "lost? N": some are missing, at least N (0: a queue was full): nobody counts them
 ///   - "gone": the device went away; it is described again, under its index, when it comes back
 ///   - "string I ..", right after a description: what the device answered when it was opened
 ///     (noted_string.hpp), and whatever else its Transport notes

@@ -19,7 +19,7 @@ class TransportSink {
   virtual void report(Timestamp time, std::span<const std::uint8_t> bytes) noexcept = 0;
   virtual void frame(Timestamp time, std::span<const EvdevEvent> events) noexcept = 0;
   /// The device, the kernel or limn dropped so many reports (frames) here; where nobody counts,
-  /// `estimated` and at least that many.
+  /// `estimated` and at least that many: 0 where a queue was full and perhaps none was dropped.
   virtual void lost(std::uint32_t count, bool estimated) noexcept = 0;
 };
 

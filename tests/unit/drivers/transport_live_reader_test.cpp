@@ -401,6 +401,22 @@ TEST(OpenMessages, AFloodHasNoMoreThanItsShare) {
   EXPECT_EQ(sink.reports, Transport::kMostReports);
 }
 
+TEST(LiveReader, AFullQueueOfTheKernelIsTold) {
+  constexpr int kQueue = 5;
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends), 0);
+  for (std::uint8_t i = 0; i < kQueue; ++i) ASSERT_EQ(::write(ends[0], &i, 1), 1);
+  const auto reader = start(open_messages(ends[1], pen(), kQueue));
+  std::vector<std::string> told;
+  for (int i = 0; i < kQueue + 1; ++i) told.push_back(text_of(*reader->next()));
+  EXPECT_EQ(told.back(), "report 0 4");
+  const std::uint8_t more = 9;
+  ASSERT_EQ(::write(ends[0], &more, 1), 1);
+  EXPECT_EQ(text_of(*reader->next()), "note 0 lost? 0");
+  EXPECT_EQ(text_of(*reader->next()), "report 0 9");
+  ::close(ends[0]);
+}
+
 /// Has read three reports ahead of its descriptor, which shows one only.
 class ReadingAhead final : public Transport {
  public:
