@@ -13,6 +13,7 @@ constexpr int kHexadecimal = 16;
 constexpr std::uint16_t kEvSyn = 0;  // <linux/input-event-codes.h>
 constexpr std::uint16_t kSynReport = 0;
 constexpr std::uint16_t kAbsMax = 0x3F;
+constexpr std::string_view kNotePrefix = "#limn ";
 constexpr std::string_view kDescriptorPrefix = "#limn R:";
 
 /// A comment may stand behind the fields of a line, but for a name, to which a # may belong.
@@ -32,6 +33,12 @@ Expected<void> EvemuReader::take(const Line& line) {
   if (text.starts_with(kDescriptorPrefix)) {
     if (!line.terminated) return cut_short();
     return take_descriptor(text.substr(kDescriptorPrefix.size()));
+  }
+  if (text.starts_with(kNotePrefix)) {
+    if (!line.terminated) return cut_short();
+    if (!device_.announced) announce();  // what a note is about stands above it
+    emit(TraceNote{text.substr(kNotePrefix.size()), 0});
+    return {};
   }
   if (text.empty() || text[0] == '#' || text::trimmed(text).empty()) return {};
   const bool keyed = text.size() >= 2 && text[1] == ':' && text::is_letter(text[0]);

@@ -78,6 +78,12 @@ Expected<void> EvemuWriter::lost() {
   return sink_.write(lines_);
 }
 
+Expected<void> EvemuWriter::note(std::string_view note) {
+  lines_ = "#limn ";
+  text::append_one_line(lines_, note);
+  return sink_.write(lines_);
+}
+
 void EvemuWriter::append_event(Timestamp time, std::uint16_t type, std::uint16_t code,
                                std::int32_t value) {
   lines_ += "E: ";

@@ -1,13 +1,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "input/base/byte_stream.hpp"
 #include "input/trace/trace.hpp"
 
 namespace limn {
 
-/// Writes an evemu 1.3 file of one device that this project's reader and evemu-play read: `N:`,
+/// Writes an evemu 1.3 file of one device that this project's reader reads: `N:`,
 /// `I:`, `A:` for a description, `E:` for the events of a frame and the SYN_REPORT behind them. The
 /// report descriptor, which evemu has no line for, stands in a comment (TraceFormat::kEvemu), so
 /// that a recording decodes as the live device did. There are no `P:` and `B:` lines: limn does not
@@ -32,6 +33,10 @@ class EvemuWriter {
   /// Frames are missing here: an empty frame with a SYN_DROPPED, as the kernel tells it, at the
   /// time of the frame before. (evemu cannot say how many: it reads as one or more.)
   Expected<void> lost();
+
+  /// A "#limn" note, which other tools pass over: "gone" where the device was unplugged. Line ends
+  /// become blanks.
+  Expected<void> note(std::string_view note);
 
  private:
   void append_event(Timestamp time, std::uint16_t type, std::uint16_t code, std::int32_t value);

@@ -27,10 +27,9 @@ namespace limn {
 ///               bytes, ended by a blank line, the next header or the end; but a report whose last
 ///               line is full may go on, so there the end alone is damage. DeviceIndex is the
 ///               interface number, plus 256 times the ordinal of the bus and device address.
-/// kEvemu        1.0 to 1.3, the version line optional; `N:`, `I:`, `P:`, `B:`, `A:` and `E:`; and
-/// in
-///               a comment, so that other tools pass it over, `#limn R: length bytes`: the report
-///               descriptor behind the kernel's axes.
+/// kEvemu        1.0 to 1.3, the version line optional; `N:`, `I:`, `P:`, `B:`, `A:` and `E:`;
+///               `#limn R: length bytes`, the report descriptor behind the kernel's axes, and other
+///               `#limn` notes, all in comments, which other tools pass over.
 /// kStrokeCsv    `t,x,y,p[,alt,az]`: seconds, mm, mm, 0..1, degrees, degrees; the header line is
 ///               optional, `#` lines and blank lines are passed over. Every row is a PenSample of
 ///               an ordinary pen in contact. alt and az become tilt, see input/sample/tilt.hpp; an
@@ -96,7 +95,7 @@ struct EvdevFrame {
   std::span<const EvdevEvent> events;
 };
 
-/// A "#limn" comment line of a hid-recorder file, without that prefix and the blank after it: an
+/// A "#limn" comment line of a hid-recorder or evemu file, without that prefix and the blank after it: an
 /// event beside the reports of the selected device. "lost N" says that N of its reports are missing
 /// here, "lost? N" that some are, at least N; "gone" that it was unplugged; "string INDEX BYTES"
 /// (noted_string.hpp), before its first report, what it answered when it was initialised. A note

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <functional>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "drivers/devices/trace_decoder.hpp"
 #include "drivers/transport/paced_reader.hpp"
 #include "input/trace/evemu_writer.hpp"
 #include "input/trace/hid_recorder_writer.hpp"
@@ -28,7 +32,6 @@ constexpr Timestamp kProgressPeriod = 200ms;
 struct Counts {
   std::uint64_t reports = 0;
   std::uint64_t frames = 0;
-  StreamLosses losses;  // as far as the devices' transports tell
   std::uint64_t devices = 0;
 };
 
@@ -64,14 +67,8 @@ class Recorder {
     return frames_.write({frame.device, since_start(frame.time), shifted_});
   }
   Expected<void> operator()(const TraceNote& note) {
-    if (const auto loss = noted_loss(note.text)) {
-      counts_.losses.lost += loss->count;
-      counts_.losses.lost_estimated |= loss->estimated;
-      ++counts_.losses.overruns;
-    }
-    if (note.text == "gone") ++counts_.losses.resets;
     if (!evemu_) return reports_.note(note.text, note.device);
-    return noted_loss(note.text) ? frames_.lost() : Expected<void>();
+    return noted_loss(note.text) ? frames_.lost() : frames_.note(note.text);
   }
   /// Nothing else comes from devices.
   template <class Other>
@@ -94,63 +91,116 @@ class Recorder {
   Counts counts_;
 };
 
-std::string summarise(const Counts& counts, Timestamp duration) {
+std::string summarise(const Counts& counts, const TraceSummary& decoded, Timestamp duration) {
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%.1f s", to_seconds(duration));
   return (counts.frames > 0 ? count_of(counts.frames, "frame")
                             : count_of(counts.reports, "report")) +
          " of " + count_of(counts.devices, "device") + " in " + seconds +
-         losses_text(counts.losses);
+         losses_text(decoded.losses());
 }
+
+/// Records the events of live devices and hands them on, keeps the file on the disk, shows progress
+/// and ends in time. After an error of the file, which written() has, it gives the end.
+class RecordingReader final : public TraceReader {
+ public:
+  RecordingReader(LiveReader& live, RecordingFile& file, Timestamp end)
+      : live_(live), file_(file), recorder_(file), end_(end) {}
+
+  TraceFormat format() const noexcept override { return live_.format(); }
+  std::string place() const override { return live_.place(); }
+
+  Expected<TraceEvent> next() override {
+    for (;;) {
+      auto event = next_until(Timestamp::max());
+      if (!event) return tl::unexpected(std::move(event.error()));
+      if (*event) return **std::move(event);
+    }
+  }
+
+  Expected<std::optional<TraceEvent>> next_until(Timestamp deadline) override {
+    for (;;) {
+      if (!written_) return TraceEnd{};
+      auto event = live_.next_until(std::min({sync_due_, progress_due_, end_, deadline}));
+      if (!event) return event;
+      const Timestamp now = monotonic_clock().now();
+      if (*event) written_ = std::visit(recorder_, **event);
+      if (sync_due_ == Timestamp::max() && file_.dirty()) sync_due_ = now + kSyncPeriod;
+      if (written_ && now >= sync_due_) {
+        written_ = file_.sync();
+        sync_due_ = Timestamp::max();
+      }
+      if (!written_) continue;
+      if (now >= progress_due_) {
+        show_();
+        progress_due_ = now + kProgressPeriod;
+      }
+      if (now >= end_) {  // what has come by now still comes out, and then the end
+        live_.stop();
+        end_ = Timestamp::max();
+      }
+      if (*event || now >= deadline) return event;
+    }
+  }
+
+  void show_progress(std::function<void()> show) {
+    show_ = std::move(show);
+    progress_due_ = monotonic_clock().now() + kProgressPeriod;
+  }
+
+  const Counts& counts() const noexcept { return recorder_.counts(); }
+  Expected<void>& written() noexcept { return written_; }
+
+ private:
+  LiveReader& live_;
+  RecordingFile& file_;
+  Recorder recorder_;
+  Expected<void> written_;
+  std::function<void()> show_;
+  Timestamp end_;
+  Timestamp sync_due_ = Timestamp::max();
+  Timestamp progress_due_ = Timestamp::max();
+};
 
 }  // namespace
 
 Outcome run_record(const RecordArguments& arguments) {
-  auto reader = open_live_input(arguments.live);
-  if (!reader) return tl::unexpected(std::move(reader.error()));
+  auto live = open_live_input(arguments.live);
+  if (!live) return tl::unexpected(std::move(live.error()));
   auto file = in_file(arguments.output, RecordingFile::create(arguments.output));
   if (!file) return tl::unexpected(std::move(file.error()));
-  Recorder recorder(*file);
-  const StopOnSignal stop(**reader);
-  const bool shows_progress = ::isatty(STDERR_FILENO) != 0;
-  if (shows_progress) std::fputs("recording; Ctrl-C ends it\n", stderr);
+  const StopOnSignal stop(**live);
 
   WaitingClock& clock = monotonic_clock();
   const Timestamp start = clock.now();
-  Timestamp end = arguments.seconds > 0
-                      ? start + Timestamp(static_cast<std::int64_t>(arguments.seconds * 1e9))
-                      : Timestamp::max();
-  Timestamp sync_due = Timestamp::max();
-  Timestamp progress_due = shows_progress ? start + kProgressPeriod : Timestamp::max();
-  Expected<void> written;
-  for (bool ended = false; !ended && written;) {
-    const auto event = *(*reader)->next_until(std::min({sync_due, progress_due, end}));
-    const Timestamp now = clock.now();
-    if (event) {
-      written = std::visit(recorder, *event);
-      ended = std::holds_alternative<TraceEnd>(*event);
-      if (sync_due == Timestamp::max() && file->dirty()) sync_due = now + kSyncPeriod;
-    }
-    if (written && now >= sync_due) {
-      written = file->sync();
-      sync_due = Timestamp::max();
-    }
-    if (now >= progress_due) {
-      std::fprintf(stderr, "\r\033[K%s", summarise(recorder.counts(), now - start).c_str());
-      progress_due = now + kProgressPeriod;
-    }
-    if (now >= end) {  // what has come by now still comes out, and then the end
-      (*reader)->stop();
-      end = Timestamp::max();
-    }
+  const Timestamp end = arguments.seconds > 0
+                            ? start + Timestamp(static_cast<std::int64_t>(arguments.seconds * 1e9))
+                            : Timestamp::max();
+  auto recording = std::make_unique<RecordingReader>(**live, *file, end);
+  RecordingReader& reader = *recording;
+  // Decoding what is recorded shows what disturbs it: gaps, clock jumps, repaired transitions.
+  TraceDecoder decoder(std::move(recording), {.salvage = true});
+  const auto summary = [&] {
+    return summarise(reader.counts(), decoder.summary(), clock.now() - start);
+  };
+  const bool shows_progress = ::isatty(STDERR_FILENO) != 0;
+  if (shows_progress) {
+    std::fputs("recording; Ctrl-C ends it\n", stderr);
+    reader.show_progress([&] { std::fprintf(stderr, "\r\033[K%s", summary().c_str()); });
+  }
+  for (;;) {
+    const auto sample = decoder.next();
+    if (!sample) return in_file("", Expected<void>(tl::unexpected(sample.error())));
+    if (*sample == nullptr) break;
   }
   if (shows_progress) std::fputs("\r\033[K", stderr);
+  Expected<void> written = std::move(reader.written());
   if (written) written = file->sync();
   if (!written) {
     written.error().remedy += "; what was recorded before stands";
     return in_file(arguments.output, std::move(written));
   }
-  std::fprintf(stderr, "%s\n", summarise(recorder.counts(), clock.now() - start).c_str());
+  std::fprintf(stderr, "%s\n", summary().c_str());
   return {};
 }
 

@@ -48,6 +48,18 @@ TEST(EvemuWriter, WritesTheLinesOfTheFormat) {
             "E: 2.000000001 0003 0000 -2\nE: 2.000000001 0000 0000 0\n");
 }
 
+TEST(EvemuWriter, NotesComeBackWhereTheyStood) {
+  StringSink sink;
+  EvemuWriter writer(sink);
+  ASSERT_TRUE(writer.describe(pen()));
+  ASSERT_TRUE(write(writer, {event(0, 3, 0, 17)}));
+  ASSERT_TRUE(writer.note("gone"));
+  ASSERT_TRUE(writer.describe(pen()));
+  ASSERT_TRUE(write(writer, {event(1'000'000, 3, 0, 18)}));
+  const Reading reading = read_trace(sink.text());
+  EXPECT_EQ(reading.order, "dfndf.");
+}
+
 TEST(EvemuWriter, TheReaderGivesTheSameAgain) {
   for_all(100, [](Rng& rng) {
     StringSink sink;
