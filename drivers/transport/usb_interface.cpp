@@ -116,7 +116,7 @@ Expected<void> UsbInterface::read_report_descriptor() {
       usb_->read({kFromInterface, kGetDescriptor, kReportDescriptor << 8, number_},
                  static_cast<std::uint16_t>(descriptor_bytes_), UsbDevice::Silence::kIsAnAnswer);
   if (!answer) return tl::unexpected(std::move(answer.error()));
-  device_.report_descriptor = *std::move(answer);
+  if (!answer->empty()) device_.report_descriptor = *std::move(answer);
   return {};
 }
 

@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::size_t kFlights = 32;
 constexpr std::chrono::seconds kLongestGoodbye{1};
-constexpr int kMostHalts = 3;        // in a row, without a report: each may take seconds
+constexpr int kMostHalts = 3;                                   // in a row, without a report
+constexpr Timestamp kLongestInHalts = std::chrono::seconds(6);  // over a stream's life
 constexpr int kMostFailures = 1000;  // the same; a second's worth at full speed
 
 /// A transfer ends with a short packet or when it is full, so its length is the longest report,
@@ -133,9 +134,9 @@ class UsbTransport final : public Transport {
         if (size > 0) {
           sink_->report(monotonic_clock().now(),
                         {flight.bytes.data(), std::min(size, flight.bytes.size())});
+          halts_ = 0;
         }
         failures_ = 0;
-        halts_ = 0;
         break;
       }
       case LIBUSB_TRANSFER_STALL:
@@ -174,11 +175,15 @@ class UsbTransport final : public Transport {
     gone_ |= !any_in_the_air();
   }
 
+  /// The request waits for the device, up to 5 s, and everybody with it: what a device may waste
+  /// is bounded over its life.
   void clear_halt() noexcept {
     halted_ = false;
-    const bool cleared = ++halts_ <= kMostHalts && libusb_clear_halt(interface_->usb_->handle(),
-                                                                     interface_->endpoint_in_) == 0;
-    gone_ |= !cleared;
+    const Timestamp begin = monotonic_clock().now();
+    const bool cleared =
+        libusb_clear_halt(interface_->usb_->handle(), interface_->endpoint_in_) == 0;
+    in_halts_ += monotonic_clock().now() - begin;
+    gone_ |= !cleared || ++halts_ > kMostHalts || in_halts_ > kLongestInHalts;
   }
 
   static void LIBUSB_CALL descriptor_came(int descriptor, short events, void* self) {
@@ -201,7 +206,8 @@ class UsbTransport final : public Transport {
   int landings_ = 0;               // in this drain
   int failures_ = 0;
   int halts_ = 0;
-  int watch_error_ = 0;  // errno
+  Timestamp in_halts_{};  // time that went into clearing them
+  int watch_error_ = 0;   // errno
   bool halted_ = false;
   bool gone_ = false;
   bool closing_ = false;
