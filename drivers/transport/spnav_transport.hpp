@@ -12,12 +12,11 @@ namespace limn {
 /// without reading beside it. What spacenavd sends comes as frames, as an event node would give
 /// them, stamped when read:
 ///
-///     motion    ABS_X, ABS_Y, ABS_Z, ABS_RX, ABS_RY, ABS_RZ (0 to 5), all six in every frame: x,
-///     y,
-///               z, rx, ry, rz in spacenavd's frame (of the device's own x, y, z: x, -z, -y), after
-///               its dead zone, sensitivity and axis map. Displacements, not rates; all zero at
-///               rest.
-///     button n  EV_KEY, BTN_0 (0x100) + n, 1 pressed, 0 released; n beyond KEY_MAX is passed over
+///   - A motion is ABS_X, ABS_Y, ABS_Z, ABS_RX, ABS_RY, ABS_RZ (0 to 5), all six in every frame:
+///     x, y, z, rx, ry, rz in spacenavd's frame (of the device's own x, y, z: x, -z, -y), after its
+///     dead zone, sensitivity and axis map. Displacements, not rates; all zero at rest.
+///   - Button n is EV_KEY, BTN_0 (0x100) + n, 1 pressed, 0 released; n beyond KEY_MAX is passed
+///     over.
 ///
 /// The axes' ranges are not known: spacenavd scales. Ids are those of its first device, where it is
 /// recent enough to tell (protocol 1). libspnav keeps one connection a process: one of these at a

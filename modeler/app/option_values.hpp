@@ -18,7 +18,7 @@ std::string parse_id(std::string_view text, std::uint16_t& vendor, std::uint16_t
 /// "text", "json", "jsonl" or "csv".
 std::string parse_format(std::string_view text, OutputFormat& format);
 
-/// "hidraw" or "usb".
+/// "hidraw", "usb", "evdev" or "spnav".
 std::string parse_backend(std::string_view text, Backend& backend);
 
 /// A finite length above 0, in mm.

@@ -289,7 +289,7 @@ TEST_F(SimulatedNodes, EvdevGoesWithItsDevice) {
 std::vector<PenAction> stroke() {
   std::vector<PenAction> actions = {kHover};
   for (int i = 0; i < 20; ++i) {
-    actions.push_back({true, i > 2 && i<17, i> 9, 1000 + 37 * i, 2000 + 11 * i,
+    actions.push_back({true, i > 2 && (i < 17), (i > 9), 1000 + 37 * i, 2000 + 11 * i,
                        i > 2 && i < 17 ? 50 * i : 0, i - 10, 20 - i});
   }
   actions.push_back({false, false, false, 1703, 2209, 0, 9, 1});
