@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace limn {
@@ -65,19 +64,6 @@ Expected<std::vector<ListedDevice>> list_hid_devices() {
   hid_free_enumeration(first);
   std::sort(out.begin(), out.end(), by_number);
   return out;
-}
-
-Expected<std::vector<ListedDevice>> list_devices() {
-  auto devices = list_hid_devices();
-  if (!devices) return devices;
-  const auto add = [&devices](std::vector<ListedDevice> more) {
-    std::move(more.begin(), more.end(), std::back_inserter(*devices));
-  };
-  add(list_evdev_devices());
-  add(list_free_usb_devices());
-  if (auto spacenavd = find_spacenavd()) devices->push_back(*std::move(spacenavd));
-  mark_same_devices(*devices);
-  return devices;
 }
 
 }  // namespace limn

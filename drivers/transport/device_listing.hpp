@@ -47,6 +47,7 @@ struct ListedDevice {
   /// In sysfs, of the HID device behind it: ties hidraw and evdev together.
   std::string hid_folder;
   std::string usb_folder;  ///< in sysfs, of the USB device
+  std::string usb_node;    ///< the USB device's; empty where there is none
   /// The node of a row of the same device that limn prefers (hidraw to evdev and USB); empty: this
   /// is it.
   std::string same_as;
@@ -57,7 +58,8 @@ struct ListedDevice {
 Expected<std::vector<ListedDevice>> list_hid_devices();
 
 /// All that the system has: hidraw, then event nodes, USB devices with a HID interface that no
-/// driver has, and spacenavd's socket where it runs; `same_as` filled in. Errors as above.
+/// driver has, and spacenavd's socket where it runs; `same_as` filled in. Error: as above, and only
+/// where the others have nothing either.
 Expected<std::vector<ListedDevice>> list_devices();
 
 /// Fills in what sysfs knows of a hidraw node: descriptor, names, driver, interval, folders. `root`
@@ -68,15 +70,18 @@ void add_from_sysfs(ListedDevice& listed, const std::string& root = {});
 /// read-only, to ask for the axes' ranges.
 std::vector<ListedDevice> list_evdev_devices(const std::string& root = {});
 
-/// USB devices with a HID interface that no driver of Linux has, or that a program holds (usbfs);
-/// opens none of them.
+/// The HID interfaces of all USB devices, whoever drives them, in the order of their nodes
+/// (/dev/bus/usb/..). Reads sysfs and opens none of them.
+std::vector<ListedDevice> list_usb_devices(const std::string& root = {});
+
+/// Of these the ones that no driver of Linux has, or that a program holds (usbfs).
 std::vector<ListedDevice> list_free_usb_devices(const std::string& root = {});
 
 /// spacenavd's socket: of $SPNAV_SOCKET, else where it usually is; nothing where there is none.
 std::optional<ListedDevice> find_spacenavd(const std::string& root = {});
 
-/// Fills in same_as: rows of one HID device, or of one USB device, are one device. Of several event
-/// nodes of a HID device each has the hidraw row as its same.
+/// Fills in same_as: rows of one HID device, or of one interface of a USB device, are one device.
+/// Of several event nodes of a HID device each has the hidraw row as its same.
 void mark_same_devices(std::vector<ListedDevice>& devices);
 
 /// Which of the listed devices somebody wants.

@@ -1,4 +1,5 @@
-// For builds without hidapi or libudev: recordings work, devices do not.
+// For builds without hidapi or libudev: hidraw nodes are not found, and nobody tells of new
+// devices.
 
 #include "drivers/transport/device_listing.hpp"
 #include "drivers/transport/udev_hotplug.hpp"
@@ -14,8 +15,6 @@ tl::unexpected<Error> absent() {
 }  // namespace
 
 Expected<std::vector<ListedDevice>> list_hid_devices() { return absent(); }
-
-Expected<std::vector<ListedDevice>> list_devices() { return absent(); }
 
 Expected<std::unique_ptr<Hotplug>> watch_devices(DeviceWatch) { return absent(); }
 

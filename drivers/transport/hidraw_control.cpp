@@ -7,14 +7,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <system_error>
 #include <utility>
 
 #include "drivers/transport/file_handle.hpp"
 #include "drivers/transport/node_error.hpp"
+#include "drivers/transport/sysfs.hpp"
 #include "drivers/transport/usb_device.hpp"
 
 namespace limn {
@@ -74,12 +72,6 @@ class HidrawControl final : public DeviceControl {
   std::unique_ptr<UsbDevice> usb_;
 };
 
-int number_in(const fs::path& file) {
-  int number = -1;
-  std::ifstream(file) >> number;
-  return number;
-}
-
 }  // namespace
 
 Expected<std::unique_ptr<DeviceControl>> open_hidraw_control(const std::string& node) {
@@ -89,17 +81,9 @@ Expected<std::unique_ptr<DeviceControl>> open_hidraw_control(const std::string& 
 }
 
 std::optional<std::string> usb_node_above(const std::string& hidraw_node) {
-  std::error_code none;
-  const fs::path hid = fs::canonical(
-      fs::path("/sys/class/hidraw") / fs::path(hidraw_node).filename() / "device", none);
-  if (none) return std::nullopt;
-  const fs::path folder = hid.parent_path().parent_path();  // above the interface
-  const int bus = number_in(folder / "busnum");
-  const int address = number_in(folder / "devnum");
-  if (bus < 0 || address < 0) return std::nullopt;
-  char node[32];
-  std::snprintf(node, sizeof node, "/dev/bus/usb/%03d/%03d", bus, address);
-  return node;
+  const auto node = SysfsDevice::find("", "/class/hidraw", fs::path(hidraw_node).filename());
+  const auto usb = node ? node->above("usb", "usb_device") : std::nullopt;
+  return usb ? usb_node(*usb) : std::nullopt;
 }
 
 }  // namespace limn

@@ -4,7 +4,10 @@
 #include <sys/sysmacros.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -115,6 +118,16 @@ bool has_capability(std::string_view bitmap, unsigned bit, unsigned word_bits) {
     bitmap = bitmap.substr(0, begin == 0 ? 0 : begin - 1);
   }
   return false;
+}
+
+std::optional<std::string> usb_node(const SysfsDevice& usb) {
+  const std::string bus = usb.attribute("busnum");
+  const std::string address = usb.attribute("devnum");
+  if (bus.empty() || address.empty()) return std::nullopt;
+  std::array<char, 40> node{};
+  std::snprintf(node.data(), node.size(), "/dev/bus/usb/%03d/%03d", std::atoi(bus.c_str()),
+                std::atoi(address.c_str()));
+  return node.data();
 }
 
 std::optional<SysfsDevice> device_of_node(const std::string& node) {

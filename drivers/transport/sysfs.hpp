@@ -56,6 +56,9 @@ class SysfsDevice {
 /// `word_bits`, the highest first ("1 0 3" ); the kernel's words have the bits of its long.
 bool has_capability(std::string_view bitmap, unsigned bit, unsigned word_bits = sizeof(long) * 8);
 
+/// The node of a USB device, "/dev/bus/usb/001/004"; nothing for what is none.
+std::optional<std::string> usb_node(const SysfsDevice& usb);
+
 /// The device of a node in /dev, by its number, whatever links lead to it; nothing for what is no
 /// character device, or none of this system.
 std::optional<SysfsDevice> device_of_node(const std::string& node);

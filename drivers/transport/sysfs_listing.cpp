@@ -11,7 +11,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "drivers/transport/device_listing.hpp"
@@ -54,12 +56,15 @@ double most_reports_per_second(const SysfsDevice& usb_interface) {
 }
 
 /// What the USB interface and device above `device`, if there are any, tell.
-void add_from_usb(const SysfsDevice& device, ListedDevice& listed) {
+void add_from_usb(const SysfsDevice& device, ListedDevice& listed, const std::string& root) {
   if (const auto usb_interface = device.above("usb", "usb_interface")) {
     listed.interface_number = usb_interface->hexadecimal("bInterfaceNumber");
     listed.most_reports_per_second = most_reports_per_second(*usb_interface);
   }
-  if (const auto usb = device.above("usb", "usb_device")) listed.usb_folder = usb->folder();
+  if (const auto usb = device.above("usb", "usb_device")) {
+    listed.usb_folder = usb->folder();
+    if (auto node = usb_node(*usb)) listed.usb_node = root + *std::move(node);
+  }
 }
 
 /// udev's note of a node's property; nothing where udev keeps none of the node.
@@ -123,19 +128,64 @@ std::optional<ListedDevice> listed_event(const SysfsDevice& event, const std::st
     listed.hid_folder = hid->folder();
     listed.driver = hid->driver();
   }
-  add_from_usb(*input, listed);
+  add_from_usb(*input, listed, root);
   return listed;
 }
 
-/// The first HID interface of a USB device that no driver of Linux has; nothing where all have one.
-std::optional<SysfsDevice> free_hid_interface(const SysfsDevice& usb, const std::string& root) {
-  constexpr std::uint16_t kHidClass = 3;
-  for (SysfsDevice& one : SysfsDevice::list(root, "/bus/usb/devices", usb.name() + ":")) {
-    const std::string driver = one.driver();
-    const bool free = driver.empty() || driver == "usbfs";
-    if (free && one.hexadecimal("bInterfaceClass") == kHidClass) return std::move(one);
+/// As Linux names what a HID device hangs on: "usb-0000:00:14.0-1.2/input0". The USB device's
+/// folder is ../0000:00:14.0/usb1/1-1/1-1.2.
+std::string physical_path(const SysfsDevice& usb, int interface_number) {
+  fs::path hub = usb.folder();
+  while (hub.has_relative_path() && !hub.filename().string().starts_with("usb")) {
+    hub = hub.parent_path();
   }
-  return std::nullopt;
+  const std::string name = usb.name();
+  return "usb-" + hub.parent_path().filename().string() +
+         name.substr(std::min(name.find('-'), name.size())) + "/input" +
+         std::to_string(interface_number);
+}
+
+/// What the HID driver that has the interface read from it, if one has.
+std::vector<std::uint8_t> known_descriptor(const SysfsDevice& usb_interface) {
+  std::error_code error;
+  for (fs::directory_iterator at(usb_interface.folder(), error), end; !error && at != end;
+       at.increment(error)) {
+    auto bytes = SysfsDevice(at->path()).bytes("report_descriptor");
+    if (!bytes.empty()) return bytes;
+  }
+  return {};
+}
+
+ListedDevice listed_usb(const SysfsDevice& usb_interface, const SysfsDevice& usb,
+                        const std::string& root) {
+  constexpr std::uint16_t kUsbBus = 3;
+  ListedDevice listed;
+  listed.backend = Backend::kUsb;
+  listed.interface_number = usb_interface.hexadecimal("bInterfaceNumber");
+  listed.most_reports_per_second = most_reports_per_second(usb_interface);
+  listed.driver = usb_interface.driver();
+  listed.usb_folder = usb.folder();
+  listed.node = root + usb_node(usb).value_or("");
+  listed.usb_node = listed.node;
+  listed.readable = is_readable(listed.node, R_OK | W_OK);
+  listed.serial = usb.attribute("serial").substr(0, kMaxDeviceTextBytes);
+  TraceDevice& device = listed.device;
+  device.bus = kUsbBus;
+  device.vendor = usb.hexadecimal("idVendor");
+  device.product = usb.hexadecimal("idProduct");
+  device.version = usb.hexadecimal("bcdDevice");
+  device.name = usb.attribute("manufacturer");  // as Linux names it on hidraw
+  const std::string product = usb.attribute("product");
+  if (!device.name.empty() && !product.empty()) device.name += ' ';
+  device.name = (device.name + product).substr(0, kMaxDeviceTextBytes);
+  device.physical_path = physical_path(usb, listed.interface_number);
+  device.report_descriptor = known_descriptor(usb_interface);
+  return listed;
+}
+
+/// No driver of Linux has it; a program (usbfs) may.
+bool is_free(const ListedDevice& listed) {
+  return listed.driver.empty() || listed.driver == "usbfs";
 }
 
 }  // namespace
@@ -158,7 +208,7 @@ void add_from_sysfs(ListedDevice& listed, const std::string& root) {
   }
   listed.hid_folder = hid->folder();
   listed.driver = hid->driver();
-  add_from_usb(*hid, listed);
+  add_from_usb(*hid, listed, root);
 }
 
 std::vector<ListedDevice> list_evdev_devices(const std::string& root) {
@@ -169,34 +219,38 @@ std::vector<ListedDevice> list_evdev_devices(const std::string& root) {
   return out;
 }
 
-std::vector<ListedDevice> list_free_usb_devices(const std::string& root) {
+std::vector<ListedDevice> list_usb_devices(const std::string& root) {
+  constexpr std::uint16_t kHidClass = 3;
   std::vector<ListedDevice> out;
-  for (const SysfsDevice& usb : SysfsDevice::list(root, "/bus/usb/devices")) {
-    if (usb.property("DEVTYPE") != "usb_device") continue;
-    const auto free = free_hid_interface(usb, root);
-    if (!free) continue;
-    ListedDevice listed;
-    listed.backend = Backend::kUsb;
-    constexpr std::uint16_t kUsbBus = 3;
-    std::array<char, 32> node{};
-    std::snprintf(node.data(), node.size(), "/dev/bus/usb/%03d/%03d",
-                  std::atoi(usb.attribute("busnum").c_str()),
-                  std::atoi(usb.attribute("devnum").c_str()));
-    listed.node = root + node.data();
-    listed.device.bus = kUsbBus;
-    listed.device.vendor = usb.hexadecimal("idVendor");
-    listed.device.product = usb.hexadecimal("idProduct");
-    listed.device.version = usb.hexadecimal("bcdDevice");
-    listed.device.name = usb.attribute("product");
-    listed.serial = usb.attribute("serial");
-    listed.interface_number = free->hexadecimal("bInterfaceNumber");
-    listed.most_reports_per_second = most_reports_per_second(*free);
-    listed.driver = free->driver();
-    listed.usb_folder = usb.folder();
-    listed.readable = is_readable(listed.node, R_OK | W_OK);
-    out.push_back(std::move(listed));
+  for (const SysfsDevice& one : SysfsDevice::list(root, "/bus/usb/devices")) {
+    if (one.hexadecimal("bInterfaceClass") != kHidClass) continue;
+    const auto usb = one.above("usb", "usb_device");
+    if (usb && usb_node(*usb)) out.push_back(listed_usb(one, *usb, root));
   }
+  std::sort(out.begin(), out.end(), [](const ListedDevice& a, const ListedDevice& b) {
+    return std::tie(a.node, a.interface_number) < std::tie(b.node, b.interface_number);
+  });
   return out;
+}
+
+std::vector<ListedDevice> list_free_usb_devices(const std::string& root) {
+  std::vector<ListedDevice> out = list_usb_devices(root);
+  std::erase_if(out, [](const ListedDevice& one) { return !is_free(one); });
+  return out;
+}
+
+Expected<std::vector<ListedDevice>> list_devices() {
+  auto hid = list_hid_devices();
+  std::vector<ListedDevice> devices = hid ? *std::move(hid) : std::vector<ListedDevice>();
+  const auto add = [&devices](std::vector<ListedDevice> more) {
+    std::move(more.begin(), more.end(), std::back_inserter(devices));
+  };
+  add(list_evdev_devices());
+  add(list_free_usb_devices());
+  if (auto spacenavd = find_spacenavd()) devices.push_back(*std::move(spacenavd));
+  if (!hid && devices.empty()) return tl::unexpected(std::move(hid.error()));
+  mark_same_devices(devices);
+  return devices;
 }
 
 std::optional<ListedDevice> find_spacenavd(const std::string& root) {
@@ -222,7 +276,8 @@ void mark_same_devices(std::vector<ListedDevice>& devices) {
       if (other.backend != Backend::kHidraw) return false;
       return listed.backend == Backend::kEvdev
                  ? !listed.hid_folder.empty() && other.hid_folder == listed.hid_folder
-                 : !listed.usb_folder.empty() && other.usb_folder == listed.usb_folder;
+                 : !listed.usb_folder.empty() && other.usb_folder == listed.usb_folder &&
+                       other.interface_number == listed.interface_number;
     });
     if (same != devices.end()) listed.same_as = same->node;
   }

@@ -14,10 +14,6 @@
 
 namespace limn {
 
-/// The HID interfaces of all USB devices, whoever drives them, in the order of their nodes
-/// (/dev/bus/usb/..). Reads sysfs and opens none of them.
-Expected<std::vector<ListedDevice>> list_usb_devices();
-
 /// An interface of a USB device that limn has for itself, before its stream is read. While this (or
 /// the stream) lives, Linux's driver is away and its nodes are gone; then it comes back.
 class UsbInterface final : public DeviceControl {

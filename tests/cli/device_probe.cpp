@@ -123,7 +123,7 @@ int hotplug(const std::string& text, const std::string& path) {
   DeviceWatch watch;
   if (path.find("hidraw") == std::string::npos) {
     watch.subsystem = "usb";
-    watch.list = list_usb_devices;
+    watch.list = [] { return list_devices_of(Backend::kUsb); };
   }
   watch.wanted = [](const ListedDevice&) { return true; };
   watch.open = [&, opened = false](const ListedDevice& listed) mutable {

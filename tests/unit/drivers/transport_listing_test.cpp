@@ -210,8 +210,31 @@ TEST(ListFreeUsbDevices, LeavesOutBoundAndOtherInterfaces) {
   EXPECT_EQ(list_free_usb_devices(held.root()).at(0).driver, "usbfs");
 }
 
+TEST(ListUsbDevices, HasARowForEachHidInterfaceWhoeverDrivesIt) {
+  const FakeSystem system;
+  system.hid_device();
+  const std::string second = std::string(FakeSystem::kUsb) + "/1-1:1.3";
+  system.device(second, "usb", "/bus/usb/devices", "DEVTYPE=usb_interface\n");
+  system.file("/sys" + second + "/bInterfaceNumber", "03\n");
+  system.file("/sys" + second + "/bInterfaceClass", "03\n");
+  const auto listed = list_usb_devices(system.root());
+  ASSERT_EQ(listed.size(), 2u);
+  EXPECT_EQ(listed[0].interface_number, 2);
+  EXPECT_EQ(listed[0].driver, "usbhid");
+  EXPECT_EQ(listed[0].device.report_descriptor.size(), 4u) << "as its driver knows it";
+  EXPECT_EQ(listed[0].device.physical_path, "usb-pci0-1/input2");
+  EXPECT_EQ(listed[0].usb_node, system.root() + "/dev/bus/usb/001/012");
+  EXPECT_EQ(listed[1].interface_number, 3);
+  EXPECT_EQ(listed[1].node, listed[0].node);
+  EXPECT_EQ(listed[1].driver, "");
+  const auto free = list_free_usb_devices(system.root());
+  ASSERT_EQ(free.size(), 1u);
+  EXPECT_EQ(free[0].interface_number, 3);
+  EXPECT_THAT(list_usb_devices(system.root() + "/nowhere"), IsEmpty());
+}
+
 TEST(MarkSameDevices, TiesRowsOfOneDeviceToTheHidrawOne) {
-  std::vector<ListedDevice> rows(5);
+  std::vector<ListedDevice> rows(6);
   rows[0] = hidraw("/dev/hidraw0");
   rows[0].hid_folder = "/sys/a";
   rows[0].usb_folder = "/sys/usb1";
@@ -224,10 +247,14 @@ TEST(MarkSameDevices, TiesRowsOfOneDeviceToTheHidrawOne) {
   rows[3].backend = Backend::kUsb;
   rows[3].usb_folder = "/sys/usb1";
   rows[4].backend = Backend::kEvdev;  // no HID device
+  rows[0].interface_number = 1;
+  rows[3].interface_number = 1;
+  rows[5] = rows[3];
+  rows[5].interface_number = 2;  // no hidraw node
   mark_same_devices(rows);
   std::vector<std::string> same;
   for (const auto& row : rows) same.push_back(row.same_as);
-  EXPECT_THAT(same, ElementsAre("", "/dev/hidraw0", "", "/dev/hidraw0", ""));
+  EXPECT_THAT(same, ElementsAre("", "/dev/hidraw0", "", "/dev/hidraw0", "", ""));
 }
 
 TEST(FindSpacenavd, LooksForItsSocket) {
