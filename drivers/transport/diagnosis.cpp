@@ -1,5 +1,7 @@
 #include "drivers/transport/diagnosis.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -9,6 +11,8 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+
+#include "drivers/devices/pen_initialization.hpp"
 
 namespace limn {
 namespace {
@@ -158,10 +162,38 @@ Finding queues_finding() {
   return {Finding::State::kGood, "queues",
           "the kernel keeps 64 reports a reader on hidraw and tells nobody of more; 'limn monitor' "
           "and 'limn record' count what may be lost, and the overruns that event nodes tell of",
-          ""};
+          "where they count losses, end what keeps this machine busy, or record to a faster disk"};
+}
+
+/// Whether Linux leaves it to limn to ask the device before it reports as its tables say.
+bool needs_requests(const ListedDevice& listed) {
+  const PenInitialization* sequence =
+      find_pen_initialization(listed.device.vendor, listed.device.product);
+  return listed.backend == Backend::kHidraw && listed.driver == "hid-generic" &&
+         sequence != nullptr && sequence->interface_number == listed.interface_number;
+}
+
+std::string permission_remedy(const ListedDevice& listed) {
+  if (is_in_rules(listed)) return "install the udev rules and plug the device in again";
+  if (listed.backend == Backend::kEvdev) {
+    return "log in at this machine's own screen, or read the device on hidraw";
+  }
+  if (listed.backend == Backend::kSpnav) return "ask who runs spacenavd for access to its socket";
+  return "no line of 70-limn.rules is about it: add one for its vendor, as those there";
 }
 
 }  // namespace
+
+bool is_in_rules(const ListedDevice& listed) noexcept {
+  if (listed.backend == Backend::kEvdev) return listed.tablet;
+  if (listed.backend == Backend::kSpnav) return false;
+  constexpr std::array<std::uint16_t, 7> kVendors = {0x056A, 0x256C, 0x28BD, 0x5543,
+                                                     0x0458, 0x2FEB, 0x256F};
+  constexpr std::uint16_t kLogitech = 0x046D;  // 3Dconnexion's older ones
+  const std::uint16_t vendor = listed.device.vendor;
+  return std::find(kVendors.begin(), kVendors.end(), vendor) != kVendors.end() ||
+         (vendor == kLogitech && listed.device.product >> 8 == 0xC6);
+}
 
 Finding look_at(const ListedDevice& listed) {
   using State = Finding::State;
@@ -170,17 +202,28 @@ Finding look_at(const ListedDevice& listed) {
       return {State::kTrouble, listed.node, listed.device.name + ": another program holds it",
               "end that program"};
     }
+    if (!listed.readable) {
+      return {State::kTrouble, listed.node,
+              listed.device.name + ": no driver of Linux has it, and no permission",
+              permission_remedy(listed)};
+    }
     return {State::kNotice, listed.node, listed.device.name + ": no driver of Linux has it",
-            "plug it in again, or load the module usbhid"};
+            "read it with --backend usb, plug it in again, or load the module usbhid"};
+  }
+  if (listed.readable && needs_requests(listed)) {
+    for (const std::string& node : {listed.usb_node, listed.node}) {
+      if (!node.empty() && ::access(node.c_str(), R_OK | W_OK) != 0) {
+        return {State::kNotice, listed.node,
+                listed.device.name + ": cannot be set up, as " + node + " may not be written",
+                permission_remedy(listed)};
+      }
+    }
   }
   if (listed.readable) return {State::kGood, listed.node, listed.device.name, ""};
   // Event nodes need no permission of their own where hidraw brings the same device.
   const bool needed = listed.backend == Backend::kHidraw || listed.same_as.empty();
   return {needed ? State::kTrouble : State::kNotice, listed.node,
-          listed.device.name + ": no permission",
-          listed.backend == Backend::kHidraw
-              ? "install the udev rules and plug the device in again"
-              : "log in at this machine's own screen, or read the device on hidraw"};
+          listed.device.name + ": no permission", permission_remedy(listed)};
 }
 
 std::vector<Finding> diagnose(const std::vector<ListedDevice>& devices, const std::string& root) {

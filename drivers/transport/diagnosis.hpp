@@ -16,8 +16,11 @@ struct Finding {
   std::string remedy;   ///< empty where there is nothing to do
 };
 
-/// What keeps limn from one listed device: nothing (kGood, with its name), a permission, no driver,
-/// a program that holds it.
+/// Whether a line of 70-limn.rules is about the device's node.
+bool is_in_rules(const ListedDevice& listed) noexcept;
+
+/// What keeps limn from one listed device: nothing (kGood, with its name), a permission (also one
+/// that setting it up needs), no driver, a program that holds it.
 Finding look_at(const ListedDevice& listed);
 
 /// Looks for what keeps devices from limn, or makes their values look wrong:

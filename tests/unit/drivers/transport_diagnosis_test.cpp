@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "drivers/transport/diagnosis.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -28,7 +31,7 @@ std::vector<std::string> texts(const std::vector<Finding>& findings) {
   for (const Finding& f : findings) {
     out.push_back(std::string(kStates[static_cast<int>(f.state)]) + " " + f.subject + ": " +
                   f.what);
-    EXPECT_EQ(f.remedy.empty(), f.state == State::kGood) << "every trouble has a remedy";
+    EXPECT_TRUE(!f.remedy.empty() || f.state == State::kGood) << "every trouble has a remedy";
   }
   return out;
 }
@@ -109,11 +112,68 @@ TEST(LookAt, KnowsWhatKeepsADeviceFromLimn) {
   listed.same_as = "/dev/hidraw0";
   EXPECT_EQ(look_at(listed).state, State::kNotice) << "hidraw will do";
   listed.backend = Backend::kUsb;
+  EXPECT_THAT(
+      texts({look_at(listed)}),
+      ElementsAre(
+          "trouble /dev/input/event3: A Pen: no driver of Linux has it, and no permission"));
+  listed.readable = true;
+  EXPECT_THAT(look_at(listed).remedy, testing::StartsWith("read it with --backend usb"));
   EXPECT_THAT(texts({look_at(listed)}),
               ElementsAre("notice /dev/input/event3: A Pen: no driver of Linux has it"));
   listed.driver = "usbfs";
   EXPECT_THAT(texts({look_at(listed)}),
               ElementsAre("trouble /dev/input/event3: A Pen: another program holds it"));
+}
+
+TEST(LookAt, KnowsWhatSettingUpNeeds) {
+  const TempFolder folder;
+  ListedDevice listed = pen(folder.write("hidraw0", ""), true);
+  listed.device.vendor = 0x256C;  // a Huion, which is asked for its strings
+  listed.device.product = 0x006E;
+  listed.driver = "hid-generic";
+  listed.interface_number = 0;
+  listed.usb_node = folder.write("usb", "").string();
+  EXPECT_EQ(look_at(listed).state, State::kGood);
+  listed.usb_node = (folder.path() / "absent").string();
+  const Finding finding = look_at(listed);
+  EXPECT_EQ(finding.state, State::kNotice);
+  EXPECT_EQ(finding.what, "A Pen: cannot be set up, as " + listed.usb_node + " may not be written");
+  EXPECT_EQ(finding.remedy, "install the udev rules and plug the device in again");
+  listed.driver = "uclogic";
+  EXPECT_EQ(look_at(listed).state, State::kGood) << "Linux's driver has set it up";
+}
+
+TEST(LookAt, RecommendsTheRulesOnlyWhereTheyHelp) {
+  ListedDevice listed = pen("/dev/hidraw0", false);
+  EXPECT_EQ(look_at(listed).remedy,
+            "no line of 70-limn.rules is about it: add one for its vendor, as those there");
+  listed.device.vendor = 0x056A;
+  EXPECT_EQ(look_at(listed).remedy, "install the udev rules and plug the device in again");
+  listed.backend = Backend::kEvdev;
+  EXPECT_EQ(look_at(listed).remedy,
+            "log in at this machine's own screen, or read the device on hidraw");
+  listed.tablet = true;
+  EXPECT_EQ(look_at(listed).remedy, "install the udev rules and plug the device in again");
+}
+
+TEST(IsInRules, KnowsTheVendorsOfTheFile) {
+  std::ifstream file(LIMN_RULES_FILE);
+  const std::string rules{std::istreambuf_iterator<char>(file), {}};
+  ASSERT_NE(rules, "");
+  int vendors = 0;
+  for (unsigned vendor = 0; vendor <= 0xFFFF; ++vendor) {
+    char quoted[24];
+    std::snprintf(quoted, sizeof quoted, "idVendor}==\"%04x\"", vendor);
+    ListedDevice listed;
+    listed.device.vendor = static_cast<std::uint16_t>(vendor);
+    listed.device.product = 0xC600;
+    const bool covered = rules.find(quoted) != std::string::npos;
+    ASSERT_EQ(is_in_rules(listed), covered) << quoted;
+    vendors += covered;
+  }
+  EXPECT_EQ(vendors, 8);
+  EXPECT_NE(rules.find("KERNEL==\"event*\", ENV{ID_INPUT_TABLET}==\"1\", TAG+=\"uaccess\""),
+            std::string::npos);
 }
 
 }  // namespace
