@@ -7,6 +7,7 @@
 #include "modeler/app/live_input.hpp"
 #include "modeler/app/standard_output.hpp"
 #include "modeler/app/table.hpp"
+#include "modeler/app/terminal_text.hpp"
 
 namespace limn::app {
 namespace {
@@ -102,8 +103,7 @@ std::string for_people(const std::vector<Row>& rows) {
   std::string notes;
   for (const auto& [listed, traits, finding] : rows) {
     constexpr std::size_t kMostName = 18;
-    std::string name = listed.device.name;
-    if (name.size() > kMostName) name = name.substr(0, kMostName - 2) + "..";
+    std::string name = shortened(printable(listed.device.name), kMostName);
     std::string kind = kind_of(traits);
     constexpr std::size_t kMostKind = 12;
     if (kind.size() > kMostKind) kind.resize(kMostKind);
@@ -119,7 +119,7 @@ std::string for_people(const std::vector<Row>& rows) {
     if (!listed.same_as.empty())
       notes += listed.node + ": the same device as " + listed.same_as + "\n";
     if (finding.state != Finding::State::kGood) {
-      notes += listed.node + ": " + finding.what + "; " + finding.remedy + "\n";
+      notes += printable(listed.node + ": " + finding.what + "; " + finding.remedy) + "\n";
     }
   }
   return table.print(OutputFormat::kText) + notes;

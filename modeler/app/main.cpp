@@ -7,29 +7,13 @@
 
 #include "modeler/app/command.hpp"
 #include "modeler/app/option_values.hpp"
+#include "modeler/app/terminal_text.hpp"
 
 namespace limn::app {
 namespace {
 
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
-
-/// One line on standard error, whatever bytes file names and messages hold.
-void print_error(std::string line) {
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  }
-  std::fprintf(stderr, "limn: %s\n", line.c_str());
-}
-
-std::string describe(const Failure& failure) {
-  std::string line;
-  if (!failure.file.empty()) line += (failure.file == "-" ? "(stream)" : failure.file) + ": ";
-  if (!failure.error.at.empty()) line += failure.error.at + ": ";
-  line += failure.error.what;
-  if (!failure.error.remedy.empty()) line += "; " + failure.error.remedy;
-  return line;
-}
 
 /// An option whose text `parse` turns into a value: see option_values.hpp for what it returns.
 template <class Parse>
@@ -231,7 +215,7 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   if (!outcome) {
-    print_error(describe(outcome.error()));
+    print_error(outcome.error());
     return outcome.error().usage ? kUsage : kFailed;
   }
   return 0;

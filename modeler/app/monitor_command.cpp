@@ -16,6 +16,7 @@
 #include "modeler/app/report_timing.hpp"
 #include "modeler/app/standard_output.hpp"
 #include "modeler/app/table.hpp"
+#include "modeler/app/terminal_text.hpp"
 #include "modeler/app/trace_input.hpp"
 
 namespace limn::app {
@@ -119,7 +120,8 @@ std::string bars(const DurationStatistics& durations) {
 
 std::string describe(const Watched& device) {
   char line[256];
-  std::string text = device.id + " " + device.name + (device.gone ? " (gone)" : "") + "\n  ";
+  std::string text =
+      device.id + " " + printable(device.name) + (device.gone ? " (gone)" : "") + "\n  ";
   if (device.last) {
     const PenSample& s = *device.last;
     std::snprintf(line, sizeof line, "%-16s x %8.3f  y %8.3f mm",

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "input/base/expect.hpp"
+#include "modeler/app/terminal_text.hpp"
 
 namespace limn::app {
 namespace {
@@ -26,7 +27,7 @@ Json to_json(const Cell& cell) {
 }
 
 std::string for_people(const Cell& cell, int decimals) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+  if (const auto* text = std::get_if<std::string>(&cell)) return printable(*text);
   if (const auto* integer = std::get_if<std::int64_t>(&cell)) return std::to_string(*integer);
   if (const auto* truth = std::get_if<bool>(&cell)) return *truth ? "yes" : "no";
   if (const auto* number = std::get_if<double>(&cell)) {
