@@ -166,6 +166,7 @@ TraceDevice describe(const libevdev* evdev, const std::string& node) {
   TraceDevice device;
   device.name = text_of(libevdev_get_name(evdev));
   device.physical_path = text_of(libevdev_get_phys(evdev));
+  device.unique_id = text_of(libevdev_get_uniq(evdev));
   device.bus = static_cast<std::uint16_t>(libevdev_get_id_bustype(evdev));
   device.vendor = static_cast<std::uint16_t>(libevdev_get_id_vendor(evdev));
   device.product = static_cast<std::uint16_t>(libevdev_get_id_product(evdev));

@@ -77,6 +77,7 @@ Expected<std::unique_ptr<Transport>> open_hidraw(const std::string& node) {
   TraceDevice device;
   device.name = text_of(file.get(), HIDIOCGRAWNAME(256));
   device.physical_path = text_of(file.get(), HIDIOCGRAWPHYS(256));
+  device.unique_id = text_of(file.get(), HIDIOCGRAWUNIQ(256));
   device.bus = static_cast<std::uint16_t>(info.bustype);
   device.vendor = static_cast<std::uint16_t>(info.vendor);
   device.product = static_cast<std::uint16_t>(info.product);

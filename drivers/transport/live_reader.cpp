@@ -47,7 +47,7 @@ void clear_descriptor(int descriptor) noexcept {
 
 bool same_device(const TraceDevice& a, const TraceDevice& b) {
   return a.bus == b.bus && a.vendor == b.vendor && a.product == b.product && a.name == b.name &&
-         a.physical_path == b.physical_path;
+         a.physical_path == b.physical_path && a.unique_id == b.unique_id;
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ namespace limn {
 ///   - "string I ..", right after a description: what the device answered when it was opened
 ///     (noted_string.hpp), and whatever else its Transport notes
 ///
-/// A device that comes back is known by its ids, its name and its place (physical path).
+/// A device that comes back is known by its ids, its name, its place (physical path) and its own
+/// number, where it has one: over Bluetooth the place is the adapter's.
 class LiveReader final : public TraceReader {
  public:
   /// Starts reading. `hotplug` may be nothing: then what goes away stays away, and the stream ends

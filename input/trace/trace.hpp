@@ -78,6 +78,8 @@ struct TraceDevice {
   std::uint16_t version = 0;
   std::vector<std::uint8_t> report_descriptor;  ///< empty: not known
   std::vector<EvdevAxis> axes;                  ///< of kernel-decoded devices: evemu, evdev
+  /// Its own serial number or Bluetooth address. Of live devices; no format keeps it.
+  std::string unique_id = {};
 };
 
 /// The trace describes a device: sent before its first report or frame, and again when the trace

@@ -464,6 +464,12 @@ TEST(LiveReader, ADeviceThatComesBackKeepsItsIndex) {
   FarEnd other(pen("usb-2"), other_transport);
   port.plug_in(std::move(other_transport));
   EXPECT_EQ(next(*reader), "described 1 A Pen");
+  TraceDevice numbered = pen();  // over Bluetooth all are at one place
+  numbered.unique_id = "00:11:22:33:44:55";
+  std::unique_ptr<Transport> twin_transport;
+  FarEnd twin(numbered, twin_transport);
+  port.plug_in(std::move(twin_transport));
+  EXPECT_EQ(next(*reader), "described 2 A Pen");
 
   std::unique_ptr<Transport> back_transport;
   FarEnd back(pen(), back_transport);
