@@ -16,6 +16,10 @@ tl::unexpected<Error> absent() {
 
 Expected<std::vector<ListedDevice>> list_hid_devices() { return absent(); }
 
-Expected<std::unique_ptr<Hotplug>> watch_devices(DeviceWatch) { return absent(); }
+Expected<std::shared_ptr<DeviceNews>> listen_for_devices() { return absent(); }
+
+Expected<std::unique_ptr<Hotplug>> watch_devices(DeviceWatch, std::shared_ptr<DeviceNews>) {
+  return absent();
+}
 
 }  // namespace limn

@@ -3,9 +3,12 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
+#include <system_error>
 #include <utility>
 
+#include "drivers/transport/diagnosis.hpp"
 #include "drivers/transport/evdev_transport.hpp"
 #include "drivers/transport/hidraw_control.hpp"
 #include "drivers/transport/hidraw_transport.hpp"
@@ -108,7 +111,15 @@ Expected<std::vector<ListedDevice>> list_devices_of(Backend backend) {
 Backend backend_of_node(const std::string& node) {
   if (is_socket(node)) return Backend::kSpnav;
   if (node.starts_with("/dev/bus/usb/")) return Backend::kUsb;
+  if (const auto device = device_of_node(node); device && device->subsystem() == "usb") {
+    return Backend::kUsb;  // by a link
+  }
   return is_event_node(node) ? Backend::kEvdev : Backend::kHidraw;
+}
+
+bool is_same_node(const std::string& one, const std::string& other) {
+  std::error_code error;
+  return one == other || std::filesystem::equivalent(one, other, error);
 }
 
 Expected<OpenedDevice> open_device(const ListedDevice& listed, bool initialize) {
@@ -126,11 +137,17 @@ Expected<OpenedDevice> open_device(const ListedDevice& listed, bool initialize) 
   return open_by_hidraw(listed, sequence);
 }
 
-DeviceChoice choose_rows(const std::vector<ListedDevice>& wanted, const ListedDevice* spacenavd) {
+Expected<DeviceChoice> choose_rows(const std::vector<ListedDevice>& wanted,
+                                   const ListedDevice* spacenavd) {
   DeviceChoice choice;
   bool spacenavd_taken = false;
+  const auto by_hidraw = [&wanted](const std::string& node) {
+    return std::any_of(wanted.begin(), wanted.end(), [&node](const ListedDevice& other) {
+      return other.backend == Backend::kHidraw && other.node == node;
+    });
+  };
   for (const ListedDevice& row : wanted) {
-    if (row.backend == Backend::kEvdev && row.same_as.empty()) choice.rows.push_back(row);
+    if (row.backend == Backend::kEvdev && !by_hidraw(row.same_as)) choice.rows.push_back(row);
     if (row.backend != Backend::kHidraw) continue;
     if (row.readable) {
       choice.rows.push_back(row);
@@ -157,6 +174,11 @@ DeviceChoice choose_rows(const std::vector<ListedDevice>& wanted, const ListedDe
     }
     choice.notes.push_back(label(row) + ": no permission; " + choice.rows[before].node +
                            " is used instead");
+  }
+  if (choice.rows.empty() && !wanted.empty()) {
+    Finding finding = look_at(wanted.front());
+    return fail(ErrorCode::kMissing, std::move(finding.subject), std::move(finding.what),
+                std::move(finding.remedy));
   }
   return choice;
 }

@@ -19,6 +19,9 @@ Expected<std::vector<ListedDevice>> list_devices_of(Backend backend);
 /// spacenavd's, a node of a USB device libusb's, all else hidraw's.
 Backend backend_of_node(const std::string& node);
 
+/// Whether both name one node, perhaps by a link.
+bool is_same_node(const std::string& one, const std::string& other);
+
 struct OpenedDevice {
   std::unique_ptr<Transport> transport;
   /// Why a device that needs an initialisation has not got (all of) it. It is read as it is.
@@ -42,9 +45,10 @@ struct DeviceChoice {
 /// One row a device, of those that somebody wants: hidraw where it may be read. Where it may not:
 /// spacenavd where it runs (`spacenavd`, given for 3D mice only: it grabs their event nodes, which
 /// then stay silent for others); else the event nodes of the same device that may be read; else
-/// hidraw all the same, whose error says why. Devices that are on event nodes alone are taken,
-/// those on USB alone are not.
-DeviceChoice choose_rows(const std::vector<ListedDevice>& wanted,
-                         const ListedDevice* spacenavd = nullptr);
+/// hidraw all the same, whose error says why. Event nodes whose hidraw row nobody wants are taken;
+/// devices on USB alone are not. Error: kMissing where that leaves nothing: what look_at() finds of
+/// the first one.
+Expected<DeviceChoice> choose_rows(const std::vector<ListedDevice>& wanted,
+                                   const ListedDevice* spacenavd = nullptr);
 
 }  // namespace limn

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "drivers/transport/file_handle.hpp"
+#include "drivers/transport/open_device.hpp"
 
 namespace limn {
 namespace {
@@ -43,10 +44,42 @@ bool is_about(udev_device* event, const ListedDevice& listed) {
   return number == listed.interface_number;
 }
 
+/// The subsystem of udev whose devices are a backend's rows; "" where none is.
+std::string_view subsystem_of(Backend backend) noexcept {
+  switch (backend) {
+    case Backend::kHidraw:
+      return "hidraw";
+    case Backend::kUsb:
+      return "usb";
+    case Backend::kEvdev:
+      return "input";
+    case Backend::kSpnav:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
+
+class DeviceNews {
+ public:
+  DeviceNews(Udev context, UdevMonitor monitor)
+      : context_(std::move(context)), monitor_(std::move(monitor)) {}
+
+  int poll_descriptor() const noexcept { return udev_monitor_get_fd(monitor_.get()); }
+  UdevDevice next() noexcept { return UdevDevice(udev_monitor_receive_device(monitor_.get())); }
+
+ private:
+  Udev context_;
+  UdevMonitor monitor_;
+};
+
+namespace {
+
 class UdevHotplug final : public Hotplug {
  public:
-  UdevHotplug(Udev context, UdevMonitor monitor, DeviceWatch watch)
-      : context_(std::move(context)), monitor_(std::move(monitor)), watch_(std::move(watch)) {}
+  UdevHotplug(std::shared_ptr<DeviceNews> news, DeviceWatch watch)
+      : news_(std::move(news)), watch_(std::move(watch)) {}
 
   ~UdevHotplug() override {
     if (!thread_.joinable()) return;
@@ -84,21 +117,29 @@ class UdevHotplug final : public Hotplug {
   }
 
   void run() {
-    pollfd polled[] = {{stop_.get(), POLLIN, 0}, {udev_monitor_get_fd(monitor_.get()), POLLIN, 0}};
+    pollfd polled[] = {{stop_.get(), POLLIN, 0}, {news_->poll_descriptor(), POLLIN, 0}};
     for (;;) {
       if (::poll(polled, std::size(polled), -1) < 0 && errno != EINTR) return;
       if (polled[0].revents != 0) return;
       if (polled[1].revents == 0) continue;
-      const UdevDevice event{udev_monitor_receive_device(monitor_.get())};
+      const UdevDevice event = news_->next();
       if (event && text_of(udev_device_get_action(event.get())) == "add") take(event.get());
     }
   }
 
   void take(udev_device* event) {
-    const auto devices = watch_.list();
+    const std::string_view subsystem = text_of(udev_device_get_subsystem(event));
+    for (const Backend backend : watch_.backends) {
+      if (subsystem == subsystem_of(backend)) take(event, backend);
+    }
+  }
+
+  void take(udev_device* event, Backend backend) {
+    const auto devices = list_devices_of(backend);
     if (!devices) return;
     for (const ListedDevice& listed : *devices) {
       if (!is_about(event, listed) || !watch_.wanted(listed)) continue;
+      if (is_full()) return;
       auto transport = watch_.open(listed);
       if (!transport) continue;
       const std::lock_guard lock(mutex_);
@@ -107,8 +148,12 @@ class UdevHotplug final : public Hotplug {
     }
   }
 
-  Udev context_;
-  UdevMonitor monitor_;  // of the thread alone
+  bool is_full() {
+    const std::lock_guard lock(mutex_);
+    return opened_.size() >= kMaxTraceDevices;
+  }
+
+  std::shared_ptr<DeviceNews> news_;  // of the thread alone
   DeviceWatch watch_;
   FileHandle stop_{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};   // to the thread
   FileHandle ready_{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};  // from the thread
@@ -119,19 +164,30 @@ class UdevHotplug final : public Hotplug {
 
 }  // namespace
 
-Expected<std::unique_ptr<Hotplug>> watch_devices(DeviceWatch watch) {
-  const char* const type = watch.subsystem == "usb" ? "usb_interface" : nullptr;
+Expected<std::shared_ptr<DeviceNews>> listen_for_devices() {
   Udev context(udev_new());
   UdevMonitor monitor(context ? udev_monitor_new_from_netlink(context.get(), "udev") : nullptr);
-  if (!monitor ||
-      udev_monitor_filter_add_match_subsystem_devtype(monitor.get(), watch.subsystem.c_str(),
-                                                      type) < 0 ||
-      udev_monitor_enable_receiving(monitor.get()) < 0) {
+  bool heard = monitor != nullptr;
+  for (const Backend backend : {Backend::kHidraw, Backend::kEvdev, Backend::kUsb}) {
+    const char* const type = backend == Backend::kUsb ? "usb_interface" : nullptr;
+    heard = heard && udev_monitor_filter_add_match_subsystem_devtype(
+                         monitor.get(), subsystem_of(backend).data(), type) >= 0;
+  }
+  if (!heard || udev_monitor_enable_receiving(monitor.get()) < 0) {
     return fail(ErrorCode::kIo, "", "udev cannot be asked for new devices",
                 "plug devices in beforehand");
   }
-  auto hotplug =
-      std::make_unique<UdevHotplug>(std::move(context), std::move(monitor), std::move(watch));
+  return std::make_shared<DeviceNews>(std::move(context), std::move(monitor));
+}
+
+Expected<std::unique_ptr<Hotplug>> watch_devices(DeviceWatch watch,
+                                                 std::shared_ptr<DeviceNews> heard) {
+  if (!heard) {
+    auto listening = listen_for_devices();
+    if (!listening) return tl::unexpected(std::move(listening.error()));
+    heard = *std::move(listening);
+  }
+  auto hotplug = std::make_unique<UdevHotplug>(std::move(heard), std::move(watch));
   if (auto started = hotplug->start(); !started) return tl::unexpected(std::move(started.error()));
   return hotplug;
 }

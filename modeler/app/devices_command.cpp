@@ -4,7 +4,7 @@
 
 #include "drivers/transport/diagnosis.hpp"
 #include "modeler/app/command.hpp"
-#include "modeler/app/live_input.hpp"
+#include "modeler/app/device_selection.hpp"
 #include "modeler/app/standard_output.hpp"
 #include "modeler/app/table.hpp"
 #include "modeler/app/terminal_text.hpp"

@@ -4,48 +4,25 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
-#include <cstdio>
 #include <iterator>
 #include <optional>
 #include <utility>
+#include <vector>
 
-#include "drivers/devices/pen_initialization.hpp"
-#include "drivers/devices/pen_spec.hpp"
 #include "drivers/transport/open_device.hpp"
 #include "drivers/transport/udev_hotplug.hpp"
-#include "drivers/transport/usb_transport.hpp"
-#include "modeler/app/option_values.hpp"
+#include "modeler/app/device_selection.hpp"
+#include "modeler/app/terminal_text.hpp"
 
 namespace limn::app {
 namespace {
 
-/// VID:PID[:N] as typed: N counts, from 0, those that `limn devices` lists with these ids.
-struct DeviceId {
-  std::uint16_t vendor = 0;
-  std::uint16_t product = 0;
-  std::optional<std::size_t> ordinal;
-};
-
-std::optional<DeviceId> parse_device_id(const std::string& text) {
-  DeviceId id;
-  std::string ids = text;
-  const auto first = text.find(':');
-  const auto second = first == std::string::npos ? first : text.find(':', first + 1);
-  if (second != std::string::npos) {
-    const char* const end = text.data() + text.size();
-    std::size_t ordinal = 0;
-    const auto parsed = std::from_chars(text.data() + second + 1, end, ordinal);
-    if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
-    id.ordinal = ordinal;
-    ids = text.substr(0, second);
-  }
-  if (!parse_id(ids, id.vendor, id.product).empty()) return std::nullopt;
-  return id;
-}
-
 tl::unexpected<Failure> no_device(ErrorCode code, std::string what, std::string remedy) {
   return tl::unexpected(Failure{"", Error{code, "", std::move(what), std::move(remedy)}});
+}
+
+void print_trouble(std::string at, std::string before, const Error& error) {
+  print_error(Failure{"", Error{error.code, std::move(at), before + error.what, error.remedy}});
 }
 
 /// Opens a device; where it cannot be set up, says so and reads it as it is.
@@ -53,37 +30,44 @@ Expected<std::unique_ptr<Transport>> open_one(const ListedDevice& listed, bool i
   auto opened = open_device(listed, initialize);
   if (!opened) return tl::unexpected(std::move(opened.error()));
   if (const auto& trouble = opened->trouble) {
-    std::fprintf(stderr, "limn: %s: is read as it is, not set up: %s%s%s; %s\n",
-                 listed.node.c_str(), trouble->at.c_str(), trouble->at.empty() ? "" : " ",
-                 trouble->what.c_str(), trouble->remedy.c_str());
+    const std::string place = trouble->at.empty() ? "" : trouble->at + " ";
+    print_trouble(listed.node, "is read as it is, not set up: " + place, *trouble);
   }
   return std::move(opened->transport);
 }
 
-/// Opens what can be opened; where nothing can, the first reason.
+/// Opens what can be opened, and says on standard error what cannot; where nothing can, the first
+/// reason is the failure.
 tl::expected<std::vector<std::unique_ptr<Transport>>, Failure> open_all(
     const std::vector<ListedDevice>& rows, bool initialize) {
   std::vector<std::unique_ptr<Transport>> opened;
-  std::optional<Error> first;
+  std::vector<Error> refused;
   for (const ListedDevice& row : rows) {
     auto transport = open_one(row, initialize);
     if (transport) {
       opened.push_back(*std::move(transport));
-    } else if (!first) {
-      first = std::move(transport.error());
+    } else {
+      refused.push_back(std::move(transport.error()));
     }
   }
-  if (opened.empty() && first) return tl::unexpected(Failure{"", *std::move(first)});
+  const bool nothing = opened.empty() && !refused.empty();
+  for (std::size_t i = nothing ? 1 : 0; i < refused.size(); ++i) {
+    print_trouble(refused[i].at, "", refused[i]);
+  }
+  if (nothing) return tl::unexpected(Failure{"", std::move(refused.front())});
   return opened;
 }
 
 /// Opens what lies behind a node, once: what goes away stays away.
-tl::expected<std::unique_ptr<LiveReader>, Failure> open_node(
-    const std::string& node, const LiveArguments& live, const std::vector<ListedDevice>& listed) {
+tl::expected<std::unique_ptr<LiveReader>, Failure> open_node(const std::string& node,
+                                                             const LiveArguments& live) {
   const Backend backend = live.backend.value_or(backend_of_node(node));
   std::vector<ListedDevice> chosen;
-  std::copy_if(listed.begin(), listed.end(), std::back_inserter(chosen),
-               [&](const ListedDevice& one) { return one.node == node && one.backend == backend; });
+  if (const auto listed = list_devices_of(backend)) {
+    std::copy_if(listed->begin(), listed->end(), std::back_inserter(chosen),
+                 [&node](const ListedDevice& one) { return is_same_node(one.node, node); });
+  }
+  if (backend == Backend::kUsb) chosen = pen_interfaces(std::move(chosen));
   if (chosen.empty()) {  // let the backend say what is wrong with it
     chosen.emplace_back();
     chosen.back().node = node;
@@ -95,27 +79,33 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_node(
 }
 
 /// One row a device, and a line on standard error where the user should know of it.
-std::vector<ListedDevice> choose(const std::vector<ListedDevice>& wanted,
-                                 const std::vector<ListedDevice>& listed) {
+tl::expected<std::vector<ListedDevice>, Failure> choose(const std::vector<ListedDevice>& wanted,
+                                                        const std::vector<ListedDevice>& listed) {
   const bool mouse = std::any_of(wanted.begin(), wanted.end(), [](const ListedDevice& one) {
     return traits_of(one).kind == DeviceKind::k3dMouse;
   });
   const auto spacenavd = std::find_if(listed.begin(), listed.end(), [](const ListedDevice& one) {
     return one.backend == Backend::kSpnav;
   });
-  DeviceChoice choice =
-      choose_rows(wanted, mouse && spacenavd != listed.end() ? &*spacenavd : nullptr);
-  for (const std::string& note : choice.notes) std::fprintf(stderr, "limn: %s\n", note.c_str());
-  return std::move(choice.rows);
+  auto choice =
+      in_file("", choose_rows(wanted, mouse && spacenavd != listed.end() ? &*spacenavd : nullptr));
+  if (!choice) return tl::unexpected(std::move(choice.error()));
+  for (const std::string& note : choice->notes) print_error(note);
+  return std::move(choice->rows);
 }
 
-/// Those that come later on the backend; on hidraw where none was asked for.
-DeviceWatch watch_of(std::optional<Backend> backend) {
-  DeviceWatch watch;
-  if (backend == Backend::kUsb) watch.subsystem = "usb";
-  if (backend == Backend::kEvdev) watch.subsystem = "input";
-  if (backend) watch.list = [backend] { return list_devices_of(*backend); };
-  return watch;
+/// Opens a device that has come; nothing where it cannot be, which standard error says.
+std::unique_ptr<Transport> open_late(const ListedDevice& one, bool initialize) {
+  auto transport = open_one(one, initialize);
+  if (transport) return *std::move(transport);
+  // A program that holds a USB interface is likely this one: udev may tell of a device again.
+  if (one.driver != "usbfs") print_trouble(transport.error().at, "", transport.error());
+  return nullptr;
+}
+
+std::string what_is_missing(const LiveArguments& live, bool by_id) {
+  if (live.backend == Backend::kSpnav) return "spacenavd does not run";
+  return by_id ? "no device " + live.device + " is here" : "no pen is here";
 }
 
 std::atomic<LiveReader*> stopped_by_signal = nullptr;
@@ -136,21 +126,6 @@ void handle(int signal, void (*handler)(int)) {
 
 }  // namespace
 
-DeviceTraits traits_of(const ListedDevice& listed) {
-  DeviceTraits traits = limn::traits_of(listed.device);
-  if (listed.backend == Backend::kSpnav) traits = {DeviceKind::k3dMouse, "3D mouse", {}, {}};
-  const bool mere_axes = listed.backend == Backend::kEvdev && !listed.tablet;
-  if (mere_axes && traits.kind == DeviceKind::kPen) return {};
-  if (traits.kind != DeviceKind::kOther) return traits;
-  const PenInitialization* sequence =
-      find_pen_initialization(listed.device.vendor, listed.device.product);
-  const bool by_reports = listed.backend == Backend::kHidraw || listed.backend == Backend::kUsb;
-  if (by_reports && sequence != nullptr && sequence->interface_number == listed.interface_number) {
-    return {DeviceKind::kPen, name(sequence->family), {}, {}};
-  }
-  return traits;
-}
-
 tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArguments& live) {
   const std::string& device = live.device;
   const bool initialize = live.initialize;
@@ -163,42 +138,36 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArg
                          "give VID:PID, VID:PID:N or a node, as 'limn devices' shows them");
     }
   }
+  if (by_node) return open_node(device, live);
+  auto heard = listen_for_devices();  // before listing, so that nothing is missed in between
   auto listed = in_file("", live.backend ? list_devices_of(*live.backend) : list_devices());
-  if (!listed && !by_node) return tl::unexpected(std::move(listed.error()));
-  if (!listed) listed.emplace();
-  if (by_node) return open_node(device, live, *listed);
-  const auto wanted = [id](const ListedDevice& one) {
-    return id ? one.device.vendor == id->vendor && one.device.product == id->product
-              : traits_of(one).kind == DeviceKind::kPen;
-  };
-  std::vector<ListedDevice> chosen;
-  std::copy_if(listed->begin(), listed->end(), std::back_inserter(chosen), wanted);
-  std::optional<int> interface_number;  // of the one that N names, for when it comes back
-  if (id && id->ordinal) {
-    const std::size_t found = chosen.size();
-    chosen = *id->ordinal < found ? std::vector{chosen[*id->ordinal]} : std::vector<ListedDevice>();
-    if (!chosen.empty()) interface_number = chosen.front().interface_number;
-  }
+  if (!listed) return tl::unexpected(std::move(listed.error()));
+  auto chosen = devices_named(*listed, id, live.backend);
   if (chosen.empty()) {
-    return no_device(ErrorCode::kMissing,
-                     id ? "no device " + device + " is here" : "no pen is here",
-                     "plug it in and see 'limn devices'");
+    return no_device(ErrorCode::kMissing, what_is_missing(live, id.has_value()),
+                     live.backend == Backend::kSpnav ? "start spacenavd, or name its socket"
+                                                     : "plug it in and see 'limn devices'");
   }
-  if (!live.backend && (!id || !id->ordinal)) chosen = choose(chosen, *listed);
+  if (!live.backend && (!id || !id->ordinal)) {
+    auto rows = choose(chosen, *listed);
+    if (!rows) return tl::unexpected(std::move(rows.error()));
+    chosen = *std::move(rows);
+  }
   auto opened = open_all(chosen, initialize);
   if (!opened) return tl::unexpected(std::move(opened.error()));
   // Without udev what goes away stays away; everything else still works.
-  DeviceWatch watch = watch_of(live.backend);
-  watch.wanted = [wanted, interface_number](const ListedDevice& one) {
-    return wanted(one) && (!interface_number || one.interface_number == *interface_number);
-  };
-  watch.open = [initialize](const ListedDevice& one) {
-    auto transport = open_one(one, initialize);
-    return transport ? *std::move(transport) : std::unique_ptr<Transport>();
-  };
-  auto hotplug = watch_devices(std::move(watch));
-  return in_file("",
-                 LiveReader::start(*std::move(opened), hotplug ? *std::move(hotplug) : nullptr));
+  std::unique_ptr<Hotplug> hotplug;
+  const LaterDevices later(live.backend, id, std::move(chosen));
+  if (heard && !later.backends().empty()) {
+    DeviceWatch watch;
+    watch.backends = later.backends();
+    watch.wanted = [later](const ListedDevice& one) { return later.wants(one); };
+    watch.open = [initialize](const ListedDevice& one) { return open_late(one, initialize); };
+    if (auto watched = watch_devices(std::move(watch), *std::move(heard))) {
+      hotplug = *std::move(watched);
+    }
+  }
+  return in_file("", LiveReader::start(*std::move(opened), std::move(hotplug)));
 }
 
 StopOnSignal::StopOnSignal(LiveReader& reader) {

@@ -1,18 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
-#include "drivers/devices/device_traits.hpp"
-#include "drivers/transport/device_listing.hpp"
 #include "drivers/transport/live_reader.hpp"
 #include "modeler/app/command.hpp"
 
 namespace limn::app {
-
-/// What a listed device is to limn, or what its initialisation makes of it. Of event nodes only
-/// what udev calls a tablet is a pen.
-DeviceTraits traits_of(const ListedDevice& listed);
 
 /// Opens the devices that DEVICE names (see limn(1)), all pens where it is empty, and watches for
 /// them where they may come later. Says on standard error where it uses another backend than hidraw

@@ -122,8 +122,7 @@ int hotplug(const std::string& text, const std::string& path) {
   int other_end = -1;
   DeviceWatch watch;
   if (path.find("hidraw") == std::string::npos) {
-    watch.subsystem = "usb";
-    watch.list = [] { return list_devices_of(Backend::kUsb); };
+    watch.backends = {Backend::kUsb};
   }
   watch.wanted = [](const ListedDevice&) { return true; };
   watch.open = [&, opened = false](const ListedDevice& listed) mutable {

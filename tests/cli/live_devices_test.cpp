@@ -5,20 +5,25 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "tests/cli/run_limn.hpp"
 #include "tests/cli/sample_traces.hpp"
 #include "tests/support/recordings.hpp"
 #include "tests/support/simulated_tablet.hpp"
+#include "tests/support/spacenavd_server.hpp"
 
 namespace limn::test {
 namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr const char* kUmockdev = "/usr/bin/umockdev-run";
@@ -125,12 +130,12 @@ class LiveDevices : public testing::Test {
 /// A tablet on both sides of Linux, whose event node tells a stroke.
 class LiveTablet {
  public:
-  LiveTablet() {
-    device_ = folder_
-                  .write("tablet.umockdev", SimulatedTablet::usb_and_hid_devices() +
-                                                SimulatedTablet::hidraw_device() +
-                                                SimulatedTablet::event_device())
-                  .string();
+  /// `edit` changes what umockdev is told of the devices.
+  explicit LiveTablet(const std::function<void(std::string&)>& edit = {}) {
+    std::string text = SimulatedTablet::usb_and_hid_devices() + SimulatedTablet::hidraw_device() +
+                       SimulatedTablet::event_device();
+    if (edit) edit(text);
+    device_ = folder_.write("tablet.umockdev", text).string();
     hidraw_ = folder_.write("hidraw.ioctl", SimulatedTablet::hidraw_ioctls()).string();
     event_ = folder_.write("event.ioctl", SimulatedTablet::event_ioctls({})).string();
     // umockdev plays the first event at once, so that is none that counts.
@@ -238,6 +243,101 @@ TEST_F(LiveDevices, MonitorsAnEventNode) {
   EXPECT_EQ(last["id"], "1209:0002");
   EXPECT_GE(last["reports"], LiveTablet::kSteps + 1);
   EXPECT_EQ(last["lost"], 0);
+}
+
+void replace_all(std::string& text, const std::string& old, const std::string& put) {
+  for (std::size_t at = 0; (at = text.find(old, at)) != std::string::npos; at += put.size()) {
+    text.replace(at, old.size(), put);
+  }
+}
+
+/// Its HID interface sends what no pen's report descriptor is.
+void make_vendor_reports(std::string& text) {
+  constexpr const char* kVendorDefined = "0600FF0901A101090215002500750895098102C0";
+  const std::size_t at = text.find("H: report_descriptor=") + 21;
+  text.replace(at, text.find('\n', at) - at, kVendorDefined);
+}
+
+/// An event node of the same device that is no pen: the keys of its pad.
+void add_pad(std::string& text) {
+  std::string pad = SimulatedTablet::event_device();
+  replace_all(pad, "event300", "event301");
+  replace_all(pad, "60000", "60001");
+  replace_all(pad, "input5", "input6");
+  replace_all(pad, "key=c01 0 0", "key=0 0 0");
+  text += pad;
+}
+
+TEST_F(LiveDevices, APenThatOnlyTheKernelDecodesIsReadByItsEventNode) {
+  const LiveTablet tablet(make_vendor_reports);
+  for (const std::string device : {"", "1209:2", "1209:2:0"}) {
+    const CommandRun run = tablet.limn("record " + device + " --seconds 1.5 -o " +
+                                       tablet.path("mine" + std::to_string(device.size())));
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(" frames of 1 device in ")) << device;
+  }
+  EXPECT_THAT(tablet.limn("record 1209:2:1 -o " + tablet.path("no")).err,
+              HasSubstr("no device 1209:2:1 is here"))
+      << "the hidraw node is not among those that devices lists";
+}
+
+TEST_F(LiveDevices, BackendEvdevOpensPensOnly) {
+  const LiveTablet tablet(add_pad);
+  const CommandRun all = tablet.limn("devices --all --format json");
+  EXPECT_EQ(json::parse(all.out).size(), 3u) << all.out;
+  for (const std::string device : {"", "1209:2"}) {
+    const CommandRun run = tablet.limn("record --backend evdev " + device + " --seconds 1.5 -o " +
+                                       tablet.path("mine" + std::to_string(device.size())));
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(" frames of 1 device in "));
+  }
+}
+
+TEST_F(LiveDevices, WhatCannotBeOpenedBesideOthersIsTold) {
+  const LiveTablet tablet([](std::string& text) { text += SimulatedTablet::hidraw_device(1); });
+  const CommandRun run = tablet.limn("record --seconds 0.2 -o " + tablet.path("mine.hid"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("limn: /dev/hidraw1: "));
+  EXPECT_THAT(run.err, HasSubstr("0 reports of 1 device in "));
+}
+
+TEST_F(LiveDevices, NamesOfDevicesDoNotReachTheTerminalRaw) {
+  const LiveTablet tablet(
+      [](std::string& text) { replace_all(text, "Simulated Tablet", "Simulated\x1b[2JTablet"); });
+  for (const std::string words : {"devices", "monitor --seconds 0.2", "doctor"}) {
+    const CommandRun run = tablet.limn(words);
+    EXPECT_THAT(run.out + run.err, Not(HasSubstr("\x1b"))) << words;
+    EXPECT_THAT(run.out, HasSubstr("Simulated")) << words;
+  }
+}
+
+TEST(LiveSpnav, BackendSpnavReadsWhateverSpacenavdHas) {
+  if (LIMN_HAS_SPNAV == 0) GTEST_SKIP() << "this build has no libspnav";
+  if (std::filesystem::exists("/run/spnav.sock")) GTEST_SKIP() << "a spacenavd runs here";
+  for (const std::string device : {"", "256f:c635"}) {
+    SpacenavdServer server(1);
+    std::thread hand([&server] {
+      server.wait_for_client();
+      for (std::int32_t i = 1; i <= 5; ++i) server.send({0, i, 2 * i, 0, 0, 0, 0, 8});
+      server.leave();
+    });
+    ::setenv("SPNAV_SOCKET", server.path().c_str(), 1);
+    const CommandRun run =
+        run_shell("\"$0\" record --backend spnav " + device + " --seconds 60 -o -");
+    ::unsetenv("SPNAV_SOCKET");
+    server.stop_listening();
+    hand.join();
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("5 frames of 1 device in ")) << "and it ends with spacenavd";
+    EXPECT_THAT(run.out, HasSubstr("N: SpaceMouse Compact"));
+  }
+}
+
+TEST(LiveSpnav, SaysWhereNoSpacenavdRuns) {
+  if (std::filesystem::exists("/run/spnav.sock")) GTEST_SKIP() << "a spacenavd runs here";
+  const CommandRun run = run_limn({"monitor", "--backend", "spnav"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err, "limn: spacenavd does not run; start spacenavd, or name its socket\n");
 }
 
 TEST_F(LiveDevices, DoctorNamesTheDriverAndTheQueues) {

@@ -77,6 +77,17 @@ TEST_F(LiveUsb, RecordsEveryReportWhole) {
   }
 }
 
+TEST_F(LiveUsb, ANodeOfABoundDeviceNeedsNoBackend) {
+  SimulatedUsb pen;
+  make_small_pen(pen);
+  pen.send(small_pen_report(1), 64);
+  pen.fail(ENODEV, 64);
+  const CommandRun run = pen.limn("record /dev/bus/usb/001/002 -o -");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, StartsWith("1 report of 1 device"));
+  EXPECT_THAT(run.out, HasSubstr("P: usb-0000:00:14.0-1/input0"));
+}
+
 TEST_F(LiveUsb, AStalledEndpointIsClearedAndReadOn) {
   SimulatedUsb pen;
   make_small_pen(pen);

@@ -70,17 +70,20 @@ int fail(const limn::Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Before listing, so that nothing is missed in between; what is told twice is read once.
+  auto heard = limn::listen_for_devices();
   auto pens = open_pens({argv + 1, argv + argc});
   if (!pens) return fail(pens.error());
   std::unique_ptr<limn::Hotplug> hotplug;
-  if (argc == 1) {
+  if (argc == 1 && heard) {
     limn::DeviceWatch watch;
     watch.wanted = is_pen;
     watch.open = [](const limn::ListedDevice& listed) {
       auto transport = limn::open_hidraw(listed.node);
       return transport ? *std::move(transport) : nullptr;
     };
-    if (auto watched = limn::watch_devices(std::move(watch))) hotplug = *std::move(watched);
+    if (auto watched = limn::watch_devices(std::move(watch), *std::move(heard)))
+      hotplug = *std::move(watched);
   }
   auto reader = limn::LiveReader::start(*std::move(pens), std::move(hotplug));
   if (!reader) return fail(reader.error());

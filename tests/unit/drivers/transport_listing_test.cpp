@@ -294,17 +294,39 @@ std::vector<ListedDevice> tablet_rows(bool hidraw_readable, bool events_readable
 }
 
 TEST(ChooseRows, PrefersHidrawAndFallsBackToEventNodes) {
-  const DeviceChoice plain = choose_rows(tablet_rows(true, true));
+  const DeviceChoice plain = *choose_rows(tablet_rows(true, true));
   EXPECT_THAT(nodes(plain), ElementsAre("/dev/hidraw0", "/dev/input/event3"));
   EXPECT_THAT(plain.notes, IsEmpty());
-  const DeviceChoice fallback = choose_rows(tablet_rows(false, true));
+  const DeviceChoice fallback = *choose_rows(tablet_rows(false, true));
   EXPECT_THAT(nodes(fallback),
               ElementsAre("/dev/input/event1", "/dev/input/event2", "/dev/input/event3"));
   EXPECT_THAT(fallback.notes,
               ElementsAre("/dev/hidraw0, A Pen: no permission; /dev/input/event1 is used instead"));
-  EXPECT_THAT(nodes(choose_rows(tablet_rows(false, false))),
+  EXPECT_THAT(nodes(*choose_rows(tablet_rows(false, false))),
               ElementsAre("/dev/hidraw0", "/dev/input/event3"))
       << "whose error then says why";
+}
+
+TEST(ChooseRows, TakesTheEventNodeOfAPenThatOnlyTheKernelDecodes) {
+  std::vector<ListedDevice> rows = tablet_rows(true, true);
+  rows.erase(rows.begin());  // its hidraw row is no pen to limn, so nobody wants it
+  rows.resize(1);
+  EXPECT_THAT(nodes(*choose_rows(rows)), ElementsAre("/dev/input/event1"));
+}
+
+TEST(ChooseRows, SaysWhyNothingIsLeft) {
+  std::vector<ListedDevice> rows(1);
+  rows[0].backend = Backend::kUsb;
+  rows[0].node = "/dev/bus/usb/001/004";
+  rows[0].device.name = "A Pen";
+  rows[0].readable = true;
+  const auto choice = choose_rows(rows);
+  ASSERT_FALSE(choice.has_value());
+  EXPECT_EQ(choice.error().at, "/dev/bus/usb/001/004");
+  EXPECT_EQ(choice.error().what, "A Pen: no driver of Linux has it");
+  EXPECT_EQ(choice.error().remedy,
+            "read it with --backend usb, plug it in again, or load the module usbhid");
+  EXPECT_TRUE(choose_rows({}).has_value()) << "nothing was wanted";
 }
 
 TEST(ChooseRows, SpacenavdStandsInForA3dMouseThatMayNotBeRead) {
@@ -313,13 +335,13 @@ TEST(ChooseRows, SpacenavdStandsInForA3dMouseThatMayNotBeRead) {
   spacenavd.node = "/run/spnav.sock";
   std::vector<ListedDevice> rows = tablet_rows(false, true);
   rows.resize(3);
-  const DeviceChoice instead = choose_rows(rows, &spacenavd);
+  const DeviceChoice instead = *choose_rows(rows, &spacenavd);
   EXPECT_THAT(nodes(instead), ElementsAre("/run/spnav.sock"));
   EXPECT_THAT(
       instead.notes,
       ElementsAre("/dev/hidraw0, A Pen: no permission; spacenavd's motions are used instead"));
   rows[0].readable = true;
-  const DeviceChoice beside = choose_rows(rows, &spacenavd);
+  const DeviceChoice beside = *choose_rows(rows, &spacenavd);
   EXPECT_THAT(nodes(beside), ElementsAre("/dev/hidraw0"));
   EXPECT_THAT(beside.notes,
               ElementsAre("/dev/hidraw0, A Pen: spacenavd uses it, too; both get its motions"));
@@ -342,6 +364,17 @@ TEST(BackendOfNode, TellsNodesApartByTheirNames) {
   EXPECT_EQ(backend_of_node(folder.write("hidraw3", "")), Backend::kHidraw);
   EXPECT_EQ(backend_of_node("/dev/input/event-absent"), Backend::kEvdev);
   EXPECT_EQ(backend_of_node("/dev/bus/usb/001/004"), Backend::kUsb);
+}
+
+TEST(IsSameNode, FollowsLinks) {
+  const TempFolder folder;
+  const std::string node = folder.write("hidraw3", "").string();
+  const std::string link = (folder.path() / "tablet").string();
+  std::filesystem::create_symlink(node, link);
+  EXPECT_TRUE(is_same_node(node, link));
+  EXPECT_FALSE(is_same_node(node, folder.write("hidraw4", "")));
+  EXPECT_TRUE(is_same_node("/nowhere/a", "/nowhere/a"));
+  EXPECT_FALSE(is_same_node("/nowhere/a", "/nowhere/b"));
 }
 
 }  // namespace

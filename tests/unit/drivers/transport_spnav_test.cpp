@@ -3,94 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstring>
-#include <thread>
-
 #include "drivers/transport/spnav_transport.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/spacenavd_server.hpp"
 
 namespace limn::test {
 namespace {
 
-using Message = std::array<std::int32_t, 8>;
-
-// spacenavd's proto.h
-constexpr std::int32_t kTag = 0x7FAA0000;
-constexpr std::int32_t kChangeProtocol = 0x5500;
-constexpr std::int32_t kDeviceName = 0x2000;
-constexpr std::int32_t kDeviceUsbId = 0x2004;
-
-/// spacenavd's end: accepts one client, answers its requests until it has asked for the device's
-/// name, and then sends what the test wants. Protocol 0 answers nothing, as before spacenavd 1.0.
-class Server {
- public:
-  explicit Server(int protocol) {
-    path_ = (folder_.path() / "spnav.sock").string();
-    listening_ = ::socket(AF_UNIX, SOCK_STREAM, 0);
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::strncpy(address.sun_path, path_.c_str(), sizeof address.sun_path - 1);
-    if (::bind(listening_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
-        ::listen(listening_, 1) != 0) {
-      std::abort();
-    }
-    thread_ = std::thread([this, protocol] { serve(protocol); });
-  }
-  ~Server() {
-    ::shutdown(listening_, SHUT_RDWR);  // where nobody came
-    if (thread_.joinable()) thread_.join();
-    leave();
-    ::close(listening_);
-  }
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
-
-  const std::string& path() const { return path_; }
-  void wait_for_client() { thread_.join(); }
-  void send(const Message& message) const { write_whole(message.data(), sizeof message); }
-  void send_bytes(std::size_t count) const { write_whole(std::string(count, 'x').data(), count); }
-  void leave() {
-    if (client_ >= 0) ::close(client_);
-    client_ = -1;
-  }
-
- private:
-  void write_whole(const void* data, std::size_t size) const {
-    EXPECT_EQ(::send(client_, data, size, MSG_NOSIGNAL), static_cast<ssize_t>(size));
-  }
-  void serve(int protocol) {
-    client_ = ::accept(listening_, nullptr, nullptr);
-    std::int32_t hello = 0;
-    EXPECT_EQ(::recv(client_, &hello, sizeof hello, MSG_WAITALL), ssize_t{sizeof hello});
-    EXPECT_EQ(hello & ~0xFF, kTag | kChangeProtocol);
-    if (protocol == 0) return;
-    const std::int32_t answer = kTag | kChangeProtocol | protocol;
-    write_whole(&answer, sizeof answer);
-    for (Message request{}; request[0] != (kTag | kDeviceName);) {
-      if (::recv(client_, request.data(), sizeof request, MSG_WAITALL) <= 0) return;
-      Message reply{request[0]};
-      if (request[0] == (kTag | kDeviceUsbId)) {
-        reply[1] = 0x256F;
-        reply[2] = 0xC635;
-      } else if (request[0] == (kTag | kDeviceName)) {
-        std::memcpy(&reply[1], "SpaceMouse Compact", 19);
-        reply[7] = 18;  // bytes left, this packet's included
-      }
-      send(reply);
-    }
-  }
-
-  TempFolder folder_;
-  std::string path_;
-  int listening_ = -1;
-  int client_ = -1;
-  std::thread thread_;
-};
+using Server = SpacenavdServer;
 
 /// Frames as text: "3.0=1 3.1=2".
 class TextSink final : public TransportSink {

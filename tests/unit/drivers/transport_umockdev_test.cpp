@@ -4,15 +4,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <umockdev.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <thread>
 
 #include "drivers/devices/evdev_pen_decoder.hpp"
 #include "drivers/devices/pen_decoder.hpp"
@@ -335,14 +338,17 @@ TEST_F(SimulatedNodes, BothSidesOfLinuxGiveTheSameSamples) {
   EXPECT_EQ(compared, 21);
 }
 
-Expected<std::unique_ptr<Hotplug>> watch_tablets() {
+Expected<std::unique_ptr<Hotplug>> watch_tablets(std::shared_ptr<DeviceNews> heard = {},
+                                                 std::vector<Backend> backends = {
+                                                     Backend::kHidraw}) {
   DeviceWatch watch;
+  watch.backends = std::move(backends);
   watch.wanted = [](const ListedDevice& one) { return one.device.vendor == 0x1209; };
   watch.open = [](const ListedDevice& one) {
     auto opened = open_device(one);
     return opened ? std::move(opened->transport) : nullptr;
   };
-  return watch_devices(std::move(watch));
+  return watch_devices(std::move(watch), std::move(heard));
 }
 
 /// One event of a live reader as text; "nothing" where none comes in ten seconds.
@@ -386,6 +392,58 @@ TEST_F(SimulatedNodes, ADeviceMayComeAndGoWhileLimnReads) {
   }
   reader->stop();
   EXPECT_EQ(next(*reader), "end");
+}
+
+TEST_F(SimulatedNodes, WhatComesBeforeTheWatchIsHeard) {
+  auto heard = listen_for_devices();
+  ASSERT_TRUE(heard.has_value()) << heard.error().what;
+  plug_in_hidraw();
+  umockdev_testbed_uevent(testbed_, ("/sys" + Tablet::hidraw_path()).c_str(), "add");
+  auto hotplug = watch_tablets(*std::move(heard));
+  ASSERT_TRUE(hotplug.has_value()) << hotplug.error().what;
+  const auto reader = *LiveReader::start({}, *std::move(hotplug));
+  EXPECT_EQ(next(*reader), "described 0 Simulated Tablet");
+  reader->stop();
+}
+
+TEST_F(SimulatedNodes, AWatchFollowsItsBackends) {
+  auto hotplug = watch_tablets({}, {Backend::kHidraw, Backend::kEvdev});
+  ASSERT_TRUE(hotplug.has_value()) << hotplug.error().what;
+  const auto reader = *LiveReader::start({}, *std::move(hotplug));
+  plug_in_event_node(kHover);
+  umockdev_testbed_uevent(testbed_, ("/sys" + Tablet::event_path()).c_str(), "add");
+  ASSERT_EQ(next(*reader), "described 0 Simulated Tablet");
+  step(kHover, kTouch);
+  EXPECT_EQ(next(*reader), "frame 0 of 8");
+  reader->stop();
+}
+
+TEST_F(SimulatedNodes, NoMoreDevicesWaitThanMayBeRead) {
+  plug_in_hidraw();
+  std::atomic<std::size_t> asked = 0;
+  std::atomic<std::size_t> opened = 0;
+  DeviceWatch watch;
+  watch.wanted = [&asked](const ListedDevice&) {
+    ++asked;
+    return true;
+  };
+  watch.open = [&opened](const ListedDevice& one) -> std::unique_ptr<Transport> {
+    ++opened;
+    int ends[2];  // in place of the node: umockdev keeps account of few open ones
+    if (::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends) != 0) return nullptr;
+    ::close(ends[0]);
+    return open_messages(ends[1], one.device);
+  };
+  auto hotplug = watch_devices(std::move(watch));
+  ASSERT_TRUE(hotplug.has_value()) << hotplug.error().what;
+  for (std::size_t i = 1; i <= kMaxTraceDevices + 3; ++i) {
+    umockdev_testbed_uevent(testbed_, ("/sys" + Tablet::hidraw_path()).c_str(), "add");
+    const auto deadline = monotonic_clock().now() + 10s;
+    while (asked < i && monotonic_clock().now() < deadline) std::this_thread::yield();
+    ASSERT_GE(asked, i);
+  }
+  EXPECT_EQ((*hotplug)->arrived().size(), kMaxTraceDevices);
+  EXPECT_EQ(opened, kMaxTraceDevices);
 }
 
 TEST_F(SimulatedNodes, ADeviceThatIsToldTwiceIsReadOnce) {
@@ -509,7 +567,7 @@ TEST_F(SimulatedNodes, TellsWhatMayNotBeReadAndReadsTheOtherSide) {
     for (const ListedDevice& one : *listed) {
       if (one.device.vendor == 0x1209) ours.push_back(one);
     }
-    const DeviceChoice choice = choose_rows(ours);
+    const DeviceChoice choice = *choose_rows(ours);
     std::string text;
     for (const auto& row : choice.rows) text += row.node + '\n';
     for (const auto& note : choice.notes) text += note + '\n';
