@@ -97,11 +97,11 @@ struct EvdevFrame {
   std::span<const EvdevEvent> events;
 };
 
-/// A "#limn" comment line of a hid-recorder or evemu file, without that prefix and the blank after it: an
-/// event beside the reports of the selected device. "lost N" says that N of its reports are missing
-/// here, "lost? N" that some are, at least N; "gone" that it was unplugged; "string INDEX BYTES"
-/// (noted_string.hpp), before its first report, what it answered when it was initialised. A note
-/// comes behind the description that stands above it. Borrowed until the reader's next call.
+/// A "#limn" comment line of a hid-recorder or evemu file, without that prefix and the blank after
+/// it: an event beside the reports of the selected device. "lost N" says that N of its reports are
+/// missing here, "lost? N" that some are, at least N; "gone" that it was unplugged; "string INDEX
+/// BYTES" (noted_string.hpp), before its first report, what it answered when it was initialised. A
+/// note comes behind the description that stands above it. Borrowed until the reader's next call.
 struct TraceNote {
   std::string_view text;
   DeviceIndex device = 0;

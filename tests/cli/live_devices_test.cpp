@@ -412,7 +412,7 @@ TEST_F(LiveDevices, RecordNeverWritesOverARecording) {
 TEST_F(LiveDevices, RecordEndsCleanlyBySignal) {
   const SimulatedPen pen(5);
   const std::string file = pen.path("mine.hid");
-  const CommandRun run = pen.limn("record -o " + file, "timeout --signal=INT 2");
+  const CommandRun run = pen.limn("record -o " + file, "timeout --signal=INT 4");
   EXPECT_THAT(run.err, HasSubstr(" of 1 device in ")) << run.err;
   EXPECT_THAT(read_file(file), HasSubstr("\nE: 0.000000 "));
 }
