@@ -35,6 +35,15 @@ struct InterfaceSpec {
   std::span<const EndpointSpec> endpoints;
 };
 
+/// Where a device hangs, as Linux numbers buses (linux/input.h, BUS_*). One that is paired over
+/// Bluetooth answers as over USB: a link that can only do USB takes it for a USB device.
+enum class Bus : std::uint16_t { kUsb = 0x03, kBluetooth = 0x05 };
+
+/// Bits of bmAttributes [USB 2.0, 9.6.3]; bit 7 is always set.
+inline constexpr std::uint8_t kBusPowered = 0x80;
+inline constexpr std::uint8_t kSelfPowered = 0xC0;
+inline constexpr std::uint8_t kRemoteWakeup = 0xA0;  ///< bus-powered, and may wake the host
+
 /// A full-speed device with one configuration of HID interfaces, numbered from 0.
 struct DeviceSpec {
   std::uint16_t vendor = 0;
@@ -44,6 +53,17 @@ struct DeviceSpec {
   std::string_view product_name;        ///< ASCII; empty: no string
   std::string_view serial_number = {};  ///< ASCII; empty: no string
   std::span<const InterfaceSpec> interfaces;
+
+  // What most devices leave at that.
+  Bus bus = Bus::kUsb;
+  std::uint16_t usb_version = 0x0200;    ///< bcdUSB
+  std::uint16_t hid_version = 0x0111;    ///< bcdHID
+  std::uint8_t most_control_bytes = 64;  ///< bMaxPacketSize0
+  std::uint8_t attributes = kBusPowered;
+  std::uint16_t power_ma = 100;         ///< bMaxPower is in units of 2 mA
+  std::uint8_t manufacturer_index = 1;  ///< of the string, where there is one; all must differ
+  std::uint8_t product_index = 2;
+  std::uint8_t serial_index = 3;
 };
 
 enum class ReportKind : std::uint8_t { kInput = 1, kOutput = 2, kFeature = 3 };
@@ -77,7 +97,8 @@ class UsbFunction {
     return kStall;
   }
 
-  /// SET_REPORT, or bytes to an interrupt-out endpoint (an output report). False: stall.
+  /// SET_REPORT, or bytes to an interrupt-out endpoint (an output report): the ID first where
+  /// reports are numbered, 0 where they are not. False: stall.
   virtual bool set_report(std::uint8_t /*interface*/, ReportKind, std::uint8_t /*id*/,
                           std::span<const std::uint8_t> /*bytes*/) noexcept {
     return false;
