@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware_sim/devices/counts.hpp"
 #include "firmware_sim/usb/descriptor_builder.hpp"
 
 namespace limn::firmware {
@@ -52,14 +53,6 @@ void put(std::span<std::uint8_t> payload, std::int64_t count) noexcept {
   constexpr std::size_t kIndex = index_of(kFields, kUsage);
   static_assert(kIndex < std::size(kFields), "the report has no field with this usage");
   put_field(payload, kFields[kIndex], count);
-}
-
-/// The nearest count, halves upwards, limited to 32 bits. No libm, so the same on every machine.
-std::int32_t to_counts(double value, double counts_per_unit) noexcept {
-  constexpr double kLimit = 2e9;
-  const double scaled = std::clamp(value * counts_per_unit + 0.5, -kLimit, kLimit);
-  const auto toward_zero = static_cast<std::int32_t>(scaled);
-  return toward_zero - (static_cast<double>(toward_zero) > scaled ? 1 : 0);
 }
 
 std::int32_t pressure_counts(const PenPose& pose) noexcept {

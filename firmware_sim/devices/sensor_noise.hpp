@@ -25,4 +25,13 @@ class SensorNoise {
   bool has_spare_ = false;
 };
 
+/// A seed for each instant of a session, so that its noise does not depend on what was measured
+/// before: the finaliser of SplitMix64 over both.
+constexpr std::uint64_t noise_seed(std::uint64_t session, std::uint64_t instant) noexcept {
+  std::uint64_t z = session ^ (instant + 1) * 0xD1342543DE82EF95U;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
+  return z ^ (z >> 31);
+}
+
 }  // namespace limn::firmware

@@ -12,9 +12,14 @@ namespace limn::firmware {
 /// Kind of a Collection item [HID 1.11, 6.2.2.6].
 enum class CollectionKind : std::uint8_t { kPhysical = 0x00, kApplication = 0x01 };
 
-/// Data part of an Input item [HID 1.11, 6.2.2.5], as a type of its own: it goes into input() and
-/// nowhere else. All are Variable and Absolute, as the fields of tablets and 3D mice are.
-enum class InputFlags : std::uint8_t { kVariable = 0x02, kConstant = 0x03 };
+/// Data part of an Input, Output or Feature item [HID 1.11, 6.2.2.5], as a type of its own: it goes
+/// into input(), output() and feature() and nowhere else.
+enum class InputFlags : std::uint8_t {
+  kArray = 0x00,     ///< each field holds the number of one of the usages
+  kVariable = 0x02,  ///< each field is a usage, absolute
+  kConstant = 0x03,
+  kRelative = 0x06,  ///< each field is a usage, as its change since the last report
+};
 
 /// A report ID, 1 to 255. 0 is reserved and does not compile.
 class ReportId {
@@ -94,6 +99,19 @@ class DescriptorBuilder {
     return *this;
   }
 
+  /// Adds the usages of a page from one to another, `last` included, to the next main item.
+  constexpr DescriptorBuilder& usage_range(Usage first, std::uint16_t last) noexcept {
+    if (last < first.id || usages_ > 0) sound_ = false;
+    usages_ += last - first.id + 1U;
+    if (first.page != page_) {
+      page_ = first.page;
+      put_unsigned(Prefix::kUsagePage, static_cast<std::uint32_t>(page_));
+    }
+    put_unsigned(Prefix::kUsageMinimum, first.id);
+    put_unsigned(Prefix::kUsageMaximum, last);
+    return *this;
+  }
+
   constexpr DescriptorBuilder& logical(Range range) noexcept {
     if (range.minimum >= range.maximum) sound_ = false;
     // The specification gives no default for it, so the first one is told even where it is 0.
@@ -130,16 +148,23 @@ class DescriptorBuilder {
     return *this;
   }
 
-  /// Error (seen by is_well_formed): no size, counts that do not fit it, more usages than fields, a
-  /// variable without a usage, or a constant with one.
+  /// Error (seen by is_well_formed): no size, counts that do not fit it, more usages than fields
+  /// (but of an array), data without a usage, or a constant with one.
   constexpr DescriptorBuilder& input(InputFlags flags) noexcept {
-    const bool is_data = flags == InputFlags::kVariable;
-    if (bits_ == 0 || usages_ > count_ || (usages_ > 0) != is_data) sound_ = false;
-    if (is_data && !fits(logical_, bits_)) sound_ = false;
     report_bits_[report_] += bits_ * count_;
-    put(Prefix::kInput, static_cast<std::uint8_t>(flags), 1);
-    end_main_item();
-    return *this;
+    return main_item(Prefix::kInput, flags);
+  }
+
+  /// Errors as of input().
+  constexpr DescriptorBuilder& output(InputFlags flags) noexcept {
+    output_bits_[report_] += bits_ * count_;
+    return main_item(Prefix::kOutput, flags);
+  }
+
+  /// Errors as of input().
+  constexpr DescriptorBuilder& feature(InputFlags flags) noexcept {
+    feature_bits_[report_] += bits_ * count_;
+    return main_item(Prefix::kFeature, flags);
   }
 
   /// Constant fields that take up `bits` bits of the report.
@@ -172,8 +197,10 @@ class DescriptorBuilder {
   /// Whether the descriptor stands as it is: every collection closed, every report of whole bytes,
   /// no usage left over, and none of the errors named above.
   constexpr bool is_well_formed() const noexcept {
-    for (const std::size_t bits : report_bits_) {
-      if (bits % 8 != 0) return false;
+    for (const auto* kind : {&report_bits_, &output_bits_, &feature_bits_}) {
+      for (const std::size_t bits : *kind) {
+        if (bits % 8 != 0) return false;
+      }
     }
     return sound_ && open_collections_ == 0 && usages_ == 0;
   }
@@ -190,6 +217,8 @@ class DescriptorBuilder {
   /// Item prefixes with size code 0: tag << 4 | type << 2.
   enum class Prefix : std::uint8_t {
     kInput = 0x80,
+    kOutput = 0x90,
+    kFeature = 0xB0,
     kCollection = 0xA0,
     kEndCollection = 0xC0,
     kUsagePage = 0x04,
@@ -203,6 +232,8 @@ class DescriptorBuilder {
     kReportId = 0x84,
     kReportCount = 0x94,
     kUsage = 0x08,
+    kUsageMinimum = 0x18,
+    kUsageMaximum = 0x28,
   };
 
   static constexpr bool continues(const FieldSpec& a, const FieldSpec& b) noexcept {
@@ -242,11 +273,24 @@ class DescriptorBuilder {
     held = wanted;
   }
 
+  constexpr DescriptorBuilder& main_item(Prefix prefix, InputFlags flags) noexcept {
+    const bool is_data = flags != InputFlags::kConstant;
+    if (bits_ == 0 || (usages_ > 0) != is_data) sound_ = false;
+    if (usages_ > count_ && flags != InputFlags::kArray) sound_ = false;
+    if (is_data && !fits(logical_, bits_)) sound_ = false;
+    put(prefix, static_cast<std::uint8_t>(flags), 1);
+    end_main_item();
+    return *this;
+  }
+
   constexpr void end_main_item() noexcept { usages_ = 0; }
 
   std::array<std::uint8_t, kCapacity> bytes_{};
   std::size_t size_ = 0;
-  std::array<std::size_t, 256> report_bits_{};  // by report ID; 0 where reports are not numbered
+  // By report ID; 0 where reports are not numbered.
+  std::array<std::size_t, 256> report_bits_{};  // of input reports
+  std::array<std::size_t, 256> output_bits_{};
+  std::array<std::size_t, 256> feature_bits_{};
   std::uint8_t report_ = 0;
   int open_collections_ = 0;
   unsigned usages_ = 0;  // waiting for their main item

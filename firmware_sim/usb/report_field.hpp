@@ -12,7 +12,10 @@ namespace limn::firmware {
 enum class UsagePage : std::uint16_t {
   kNone = 0,
   kGenericDesktop = 0x01,
+  kLed = 0x08,
+  kButton = 0x09,
   kDigitizer = 0x0D,
+  kVendor = 0xFF00,
 };
 
 struct Usage {
@@ -22,8 +25,17 @@ struct Usage {
 };
 
 namespace usages {
+inline constexpr Usage kPointer{UsagePage::kGenericDesktop, 0x01};
+inline constexpr Usage kMouse{UsagePage::kGenericDesktop, 0x02};
+inline constexpr Usage kMultiAxisController{UsagePage::kGenericDesktop, 0x08};
 inline constexpr Usage kX{UsagePage::kGenericDesktop, 0x30};
 inline constexpr Usage kY{UsagePage::kGenericDesktop, 0x31};
+inline constexpr Usage kZ{UsagePage::kGenericDesktop, 0x32};
+inline constexpr Usage kRx{UsagePage::kGenericDesktop, 0x33};
+inline constexpr Usage kRy{UsagePage::kGenericDesktop, 0x34};
+inline constexpr Usage kRz{UsagePage::kGenericDesktop, 0x35};
+inline constexpr Usage kWheel{UsagePage::kGenericDesktop, 0x38};
+inline constexpr Usage kDigitizer{UsagePage::kDigitizer, 0x01};
 inline constexpr Usage kPen{UsagePage::kDigitizer, 0x02};
 inline constexpr Usage kStylus{UsagePage::kDigitizer, 0x20};
 inline constexpr Usage kTipPressure{UsagePage::kDigitizer, 0x30};
@@ -37,6 +49,9 @@ inline constexpr Usage kEraser{UsagePage::kDigitizer, 0x45};
 inline constexpr Usage kScanTime{UsagePage::kDigitizer, 0x56};
 inline constexpr Usage kSecondaryBarrelSwitch{UsagePage::kDigitizer, 0x5A};
 inline constexpr Usage kTransducerSerial{UsagePage::kDigitizer, 0x5B};
+inline constexpr Usage kGenericIndicator{UsagePage::kLed, 0x4B};
+inline constexpr Usage kVendor1{UsagePage::kVendor, 0x01};
+constexpr Usage button(std::uint16_t number) { return {UsagePage::kButton, number}; }
 }  // namespace usages
 
 /// An inclusive range of counts (logical) or of units (physical).
