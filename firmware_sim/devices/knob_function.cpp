@@ -61,7 +61,7 @@ bool KnobFunction::set_report(std::uint8_t interface, ReportKind kind, std::uint
     zero_ = measured_;
     return true;
   }
-  return false;
+  return kind == ReportKind::kFeature && set_feature(id, bytes);
 }
 
 }  // namespace limn::firmware

@@ -42,6 +42,10 @@ class KnobFunction : public UsbFunction {
  private:
   /// The next report of axes; its length.
   virtual std::size_t axis_report(const Counts& counts, ReportBuffer report) noexcept = 0;
+  /// Any other feature report than number 7. False: stall.
+  virtual bool set_feature(std::uint8_t /*id*/, std::span<const std::uint8_t> /*bytes*/) noexcept {
+    return false;
+  }
   virtual void restart() noexcept {}
 
   std::size_t scan(const KnobPose& pose, ReportBuffer report) noexcept;

@@ -1,5 +1,7 @@
 #include "firmware_sim/devices/space_navigator.hpp"
 
+#include <algorithm>
+
 #include "firmware_sim/devices/counts.hpp"
 
 namespace limn::firmware {
@@ -138,9 +140,47 @@ constexpr DeviceSpec kSpec = [] {
   return spec;
 }();
 
+/// The feature reports that the descriptor declares, with the ID's byte.
+struct Feature {
+  std::uint8_t id;
+  std::size_t bytes;
+};
+constexpr Feature kFeatureReports[] = {{5, 2}, {6, 2},  {7, 2},  {8, 8},
+                                       {9, 8}, {10, 8}, {11, 2}, {19, 2}};
+
+/// Its place in the table; past the end where there is none.
+std::size_t index_of_feature(std::uint8_t id) noexcept {
+  const auto* const found = std::find_if(std::begin(kFeatureReports), std::end(kFeatureReports),
+                                         [id](const Feature& feature) { return feature.id == id; });
+  return static_cast<std::size_t>(found - std::begin(kFeatureReports));
+}
+
 }  // namespace
 
 const DeviceSpec& SpaceNavigator::spec() const noexcept { return kSpec; }
+
+void SpaceNavigator::restart() noexcept {
+  turned_ = false;
+  for (auto& feature : features_) feature.fill(0);
+}
+
+int SpaceNavigator::get_report(std::uint8_t, ReportKind kind, std::uint8_t id,
+                               std::span<std::uint8_t> out) noexcept {
+  static_assert(std::size(kFeatureReports) == kFeatures);
+  const std::size_t index = index_of_feature(id);
+  if (kind != ReportKind::kFeature || index == kFeatures) return kStall;
+  const std::size_t bytes = std::min(kFeatureReports[index].bytes, out.size());
+  std::copy_n(features_[index].begin(), bytes, out.begin());
+  if (bytes > 0) out[0] = id;
+  return static_cast<int>(bytes);
+}
+
+bool SpaceNavigator::set_feature(std::uint8_t id, std::span<const std::uint8_t> bytes) noexcept {
+  const std::size_t index = index_of_feature(id);
+  if (index == kFeatures || bytes.size() > kFeatureReports[index].bytes) return false;
+  std::copy(bytes.begin(), bytes.end(), features_[index].begin());
+  return true;
+}
 
 std::size_t SpaceNavigator::axis_report(const Counts& counts, ReportBuffer report) noexcept {
   const std::size_t first = turned_ ? 3 : 0;
