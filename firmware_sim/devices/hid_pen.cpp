@@ -58,7 +58,7 @@ void put(std::span<std::uint8_t> payload, std::int64_t count) noexcept {
 std::int32_t pressure_counts(const PenPose& pose) noexcept {
   if (pose.proximity != Proximity::kTouching) return 0;
   // A closed tip switch with no pressure would contradict itself.
-  return std::max(1, to_counts(pose.pressure, HidPen::kPressureMaximum));
+  return to_counts(pose.pressure, HidPen::kPressureMaximum, 1, HidPen::kPressureMaximum);
 }
 
 }  // namespace
@@ -72,8 +72,8 @@ bool HidPen::scan(const PenPose& pose, std::span<std::uint8_t, kReportBytes> rep
   const bool touches = pose.proximity == Proximity::kTouching;
   const bool inverted = pose.end == PenEnd::kEraser;
   if (sees) {
-    x_ = std::clamp(to_counts(pose.x_mm, kCountsPerMm), 0, kWidthCounts);
-    y_ = std::clamp(to_counts(pose.y_mm, kCountsPerMm), 0, kHeightCounts);
+    x_ = to_counts(pose.x_mm, kCountsPerMm, 0, kWidthCounts);
+    y_ = to_counts(pose.y_mm, kCountsPerMm, 0, kHeightCounts);
   }
 
   std::fill(report.begin(), report.end(), std::uint8_t{0});

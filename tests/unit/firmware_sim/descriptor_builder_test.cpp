@@ -65,6 +65,44 @@ TEST(DescriptorBuilder, AUsageOfAnotherPageInOneMainItemCarriesItsPage) {
               ElementsAre(0x05, 0x01, 0x09, 0x30, 0x0B, 0x42, 0x00, 0x0D, 0x00));
 }
 
+TEST(DescriptorBuilder, OutputAndFeatureReportsAreCountedByThemselves) {
+  DescriptorBuilder built;
+  built.report_id(ReportId{4}).usage(usages::kGenericIndicator).logical({0, 1}).report_size(1);
+  const std::size_t before = built.size();
+  built.output(InputFlags::kVariable).report_size(7).output(InputFlags::kConstant);
+  EXPECT_THAT(bytes(built).at(before), 0x91);
+  EXPECT_THAT(std::vector<std::uint8_t>(built.bytes().begin() + before, built.bytes().end()),
+              ElementsAre(0x91, 0x02, 0x75, 0x07, 0x91, 0x03));
+  built.usage(usages::kVendor1).report_size(8, 2).feature(InputFlags::kVariable);
+  EXPECT_THAT(bytes(built)[built.size() - 2], 0xB1);
+  EXPECT_TRUE(built.is_well_formed());
+  EXPECT_EQ(built.report_bytes(ReportId{4}), 1U) << "no input";
+  built.usage(usages::kVendor1).report_size(3, 1).feature(InputFlags::kVariable);
+  EXPECT_FALSE(built.is_well_formed()) << "a feature report of no whole bytes";
+}
+
+TEST(DescriptorBuilder, ARangeOfUsagesAndAnArrayOfThem) {
+  DescriptorBuilder buttons;
+  buttons.usage_range(usages::button(1), 3).logical({0, 1}).report_size(1, 3);
+  EXPECT_THAT(bytes(buttons), ElementsAre(0x05, 0x09, 0x19, 0x01, 0x29, 0x03, 0x15, 0x00, 0x25,
+                                          0x01, 0x75, 0x01, 0x95, 0x03));
+  EXPECT_TRUE(buttons.input(InputFlags::kVariable).padding(5).is_well_formed());
+
+  DescriptorBuilder keys;
+  keys.usage_range(usages::button(1), 200).logical({0, 200}).report_size(8, 6);
+  EXPECT_TRUE(DescriptorBuilder(keys).input(InputFlags::kArray).is_well_formed());
+  EXPECT_FALSE(DescriptorBuilder(keys).input(InputFlags::kVariable).is_well_formed())
+      << "more usages than fields";
+  EXPECT_FALSE(DescriptorBuilder().usage_range(usages::button(2), 1).is_well_formed());
+}
+
+TEST(DescriptorBuilder, ARelativeFieldSaysSo) {
+  DescriptorBuilder built;
+  built.usage(usages::kX).logical({-127, 127}).report_size(8).input(InputFlags::kRelative);
+  EXPECT_TRUE(built.is_well_formed());
+  EXPECT_THAT(bytes(built).back(), 0x06);
+}
+
 TEST(DescriptorBuilder, ATableSharesMainItemsAndFillsGaps) {
   constexpr FieldSpec kTwoSwitchesAndX[] = {
       {usages::kTipSwitch, 0, 1, {0, 1}, kNoPhysical, Unit::kNone, 0},
