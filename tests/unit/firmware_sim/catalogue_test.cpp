@@ -19,6 +19,7 @@
 #include "firmware_sim/devices/wacom_bluetooth.hpp"
 #include "firmware_sim/devices/wacom_intuos.hpp"
 #include "firmware_sim/devices/xp_pen.hpp"
+#include "tests/support/alloc_guard.hpp"
 #include "tests/unit/drivers/devices_support.hpp"
 #include "tests/unit/firmware_sim/recording_host.hpp"
 
@@ -232,6 +233,27 @@ TEST(Catalogue, TabletsAreMiceUntilTheirDriverSpeaks) {
                    EXPECT_THAT(test::ask(bus, {0xA1, 1, 0x0302, 0, 2}), testing::ElementsAre(2, 2));
                  }),
       (Found{{0, 2}}));
+}
+
+TEST(Catalogue, PollingAllocatesNothing) {
+  for (const SimulatedInfo& info : simulated_devices()) {
+    const auto device = make_simulated_device(
+        info.name, info.kind == SimulatedKind::kPen ? drawings()[0].name : motions()[0].name, 1);
+    BusDevice& bus = device->bus();
+    bus.reset();
+    test::ask(bus, {0x00, 9, 1, 0, 0});
+    std::array<std::uint8_t, 512> report{};
+    int given = 0;
+    const test::AllocGuard guard;
+    for (auto now = 0us; now < 2s; now += 1ms) {
+      for (const InterfaceSpec& interface : bus.spec().interfaces) {
+        const auto result = bus.interrupt_in(interface.endpoints[0].address, now, report);
+        given += result.status == TransferStatus::kDone ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(guard.count(), 0U) << info.name;
+    EXPECT_GT(given, 30) << info.name;
+  }
 }
 
 TEST(Catalogue, AHuionNeverTellsThatThePenLeaves) {

@@ -216,6 +216,18 @@ TEST(FaultyDevice, LostReportsAreCountedByTheScanTime) {
   EXPECT_EQ(told(fast).lost, 7U);
 }
 
+// At landings, lifts and leavings a step is no step of one pace, and nothing can be counted there.
+TEST(FaultyDevice, ScatteredLossesAreNeverCountedTooHighAndMostlyAll) {
+  for (const std::string_view name : {"pen", "fast-pen"}) {
+    FaultSpec fault = at(FaultKind::kDrop, 0s, 1000000);
+    fault.probability = 0.02;
+    const Session found = session(name, "teapot", fault);
+    ASSERT_GT(found.happened, 20U);
+    EXPECT_LE(told(found).lost, found.happened) << name;
+    EXPECT_GE(told(found).lost, found.happened * 8 / 10) << name;
+  }
+}
+
 TEST(FaultyDevice, AHaltedEndpointLosesOneReportAndGoesOn) {
   const Session found = session("pen", "circle", at(FaultKind::kStall, kInStroke));
   EXPECT_EQ(found.stalls, 1);
