@@ -71,7 +71,8 @@ const std::vector<Layer>& layers() {
 
       {"firmware_sim/usb", {"firmware_sim"}, {}},
       {"firmware_sim/devices", {"firmware_sim"}, {}},
-      {"firmware_sim/link", {"firmware_sim"}, {"linux/", "posix"}},
+      // Links are host side: /dev/uhid, timers that wake by absolute time, TCP.
+      {"firmware_sim/link", {"firmware_sim"}, {"linux/", "posix", "sys/", "netinet/"}},
 
       {"tests",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
