@@ -77,6 +77,10 @@ LinkResult<LinkEnd> UsbipServer::run(microseconds end, Waiter& waiter) {
   return LinkEnd::kStopped;
 }
 
+void UsbipServer::tell(UsbipNotice::Kind kind, std::string text) {
+  if (tell_) tell_({kind, std::move(text)});
+}
+
 void UsbipServer::look_at_cable(microseconds now) {
   const bool was = std::exchange(plugged_, exported_.device.plugged(now));
   if (was == plugged_) return;

@@ -1,0 +1,115 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "firmware_sim/link/in_memory.hpp"
+#include "firmware_sim/link/standard_requests.hpp"
+#include "tests/unit/firmware_sim/counting_device.hpp"
+
+namespace limn::firmware {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+
+/// "6000 report 0 #1", "0 plugged", ..: times in microseconds, then what.
+std::vector<std::string> events(InMemoryHost& host, std::chrono::microseconds end) {
+  std::vector<std::string> lines;
+  while (const auto event = host.next(end)) {
+    std::string line = std::to_string(event->time.count());
+    if (event->kind == HostEvent::Kind::kPlugged) line += " plugged";
+    if (event->kind == HostEvent::Kind::kUnplugged) line += " unplugged";
+    if (event->kind == HostEvent::Kind::kReport) {
+      line += " report " + std::to_string(event->interface) + " #" +
+              std::to_string(event->bytes[1] | event->bytes[2] << 8);
+    }
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+TEST(InMemoryHost, PollsEachEndpointAtItsInterval) {
+  CountingDevice device;
+  device.function.count = {3, 2};
+  InMemoryHost host(device);
+  // Due at 5, 10 and 15 ms; interface 0 is asked every 2 ms, interface 1 every one.
+  EXPECT_THAT(events(host, 20ms),
+              ElementsAre("0 plugged", "5000 report 1 #1", "6000 report 0 #1", "10000 report 0 #2",
+                          "10000 report 1 #2", "16000 report 0 #3"));
+  EXPECT_EQ(host.time(), 20ms);
+}
+
+TEST(InMemoryHost, AFasterDeviceThanTheHostWaitsItsTurn) {
+  CountingDevice device;
+  device.function.count = {3, 0};
+  device.function.period = 1ms;
+  InMemoryHost host(device);
+  EXPECT_THAT(events(host, 20ms),
+              ElementsAre("0 plugged", "2000 report 0 #1", "4000 report 0 #2", "6000 report 0 #3"));
+}
+
+TEST(InMemoryHost, IsAskedInPiecesAsInOne) {
+  CountingDevice device;
+  device.function.count = {3, 0};
+  InMemoryHost host(device);
+  std::vector<std::string> lines;
+  for (auto end = 0us; end <= 20ms; end += 700us) {
+    for (const std::string& line : events(host, end)) lines.push_back(line);
+  }
+  EXPECT_THAT(lines, ElementsAre("0 plugged", "6000 report 0 #1", "10000 report 0 #2",
+                                 "16000 report 0 #3"));
+}
+
+TEST(InMemoryHost, MakesRequestsOnceTheDeviceIsConfigured) {
+  CountingDevice device;
+  InMemoryHost host(device, {{set_report(1, ReportKind::kFeature, 2, 4), {2, 7, 8, 9}}});
+  EXPECT_THAT(events(host, 1ms), ElementsAre("0 plugged"));
+  EXPECT_THAT(device.function.told, ElementsAre(1, 3, 2, 2, 7, 8, 9));
+  EXPECT_EQ(device.usb.configuration(), 1);
+  EXPECT_EQ(device.function.resets, 1);
+}
+
+TEST(InMemoryHost, SeesTheDeviceGoAndComeBack) {
+  CountingDevice device;
+  device.function.count = {9, 0};
+  device.gone = 12ms;
+  device.back = 31ms;
+  InMemoryHost host(device, {{set_report(0, ReportKind::kFeature, 2, 4), {2, 1, 1, 1}}});
+  EXPECT_THAT(events(host, 36ms),
+              ElementsAre("0 plugged", "6000 report 0 #1", "10000 report 0 #2", "12000 unplugged",
+                          "31000 plugged", "33000 report 0 #3", "35000 report 0 #4"));
+  EXPECT_EQ(device.function.resets, 2);
+  EXPECT_EQ(device.function.feature[1], 1) << "asked again";
+}
+
+TEST(InMemoryHost, ClearsAHaltedEndpoint) {
+  CountingDevice device;
+  device.function.count = {2, 0};
+  InMemoryHost host(device);
+  EXPECT_THAT(events(host, 6ms), ElementsAre("0 plugged", "6000 report 0 #1"));
+  const SetupPacket halt = {0x02, 3, 0, 0x81, 0};
+  EXPECT_EQ(host.control(halt, {}).status, TransferStatus::kDone);
+  Bytes data(8);
+  EXPECT_EQ(device.interrupt_in(0x81, 6ms, data).status, TransferStatus::kStall);
+  EXPECT_THAT(events(host, 12ms), ElementsAre("10000 report 0 #2"));
+}
+
+TEST(InMemoryHost, SendsOutputByInterruptOrElseByControl) {
+  CountingDevice device;
+  InMemoryHost host(device);
+  events(host, 1ms);
+  const Bytes report = {3, 5, 6};
+  EXPECT_TRUE(host.send_output(0, 3, report));
+  EXPECT_THAT(device.function.told, ElementsAre(0, 2, 3, 3, 5, 6));
+  EXPECT_TRUE(host.send_output(1, 3, report));
+  EXPECT_THAT(device.function.told, ElementsAre(1, 2, 3, 3, 5, 6));
+  EXPECT_FALSE(host.send_output(2, 3, report)) << "there is no such interface";
+  EXPECT_FALSE(host.send_output(0, 9, Bytes{9, 1, 1})) << "the device refuses it";
+}
+
+}  // namespace
+}  // namespace limn::firmware
