@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr microseconds kCablePeriod{1000};
+constexpr microseconds kFrame{1000};  // of full speed
 constexpr microseconds kTryPeriod{100'000};   // Linux, too, waits before it tries a device again
 constexpr std::size_t kMostTransfer = 65535;  // wLength has 16 bits
 constexpr std::uint8_t kAddress = 1;
@@ -18,16 +18,15 @@ constexpr std::uint8_t kConfiguration = 1;
 
 }  // namespace
 
-InMemoryHost::InMemoryHost(BusDevice& device, std::vector<HostRequest> requests)
+InMemoryHost::InMemoryHost(BusDevice& device, Polling polling, std::vector<HostRequest> requests)
     : device_(device), requests_(std::move(requests)), data_(kMostTransfer) {
   const auto interfaces = device.spec().interfaces;
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
     for (const EndpointSpec& endpoint : interfaces[i].endpoints) {
       if ((endpoint.address & kToHost) == 0) continue;
-      endpoints_.push_back({static_cast<std::uint8_t>(i),
-                            endpoint.address,
-                            microseconds(1000 * std::max<int>(1, endpoint.interval_ms)),
-                            {}});
+      const int frames =
+          polling == Polling::kEachFrame ? 1 : std::max<int>(1, endpoint.interval_ms);
+      endpoints_.push_back({static_cast<std::uint8_t>(i), endpoint.address, frames * kFrame, {}});
     }
   }
 }
@@ -56,7 +55,7 @@ microseconds InMemoryHost::next_look() const noexcept {
 }
 
 std::optional<HostEvent> InMemoryHost::look_at_cable() {
-  next_cable_ = time_ + kCablePeriod;
+  next_cable_ = time_ + kFrame;
   const bool was_there = std::exchange(there_, device_.plugged(time_));
   if (!there_) {
     if (!std::exchange(configured_, false)) return std::nullopt;

@@ -38,9 +38,15 @@ struct HostEvent {
 /// order of the interfaces. The cable is looked at once a millisecond.
 class InMemoryHost {
  public:
+  enum class Polling : std::uint8_t {
+    kByInterval,  ///< as a bus does: a report may wait as long as its endpoint's interval
+    kEachFrame    ///< every millisecond, so that reports come when they are due
+  };
+
   /// `device` must outlive this. `requests` are made whenever the device has been configured, as
   /// drivers do that switch a tablet into its full mode; what it answers to them is dropped.
-  explicit InMemoryHost(BusDevice& device, std::vector<HostRequest> requests = {});
+  explicit InMemoryHost(BusDevice& device, Polling polling = Polling::kByInterval,
+                        std::vector<HostRequest> requests = {});
 
   /// The next event at or before `end`; nothing where there is none, and then it is `end`.
   std::optional<HostEvent> next(std::chrono::microseconds end);

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "firmware_sim/link/linux_name.hpp"
 #include "firmware_sim/link/standard_requests.hpp"
 
 namespace limn::firmware {
@@ -89,7 +90,7 @@ UhidLink::UhidLink(BusDevice& device, UhidOptions options, std::vector<FileDescr
     : device_(&device),
       options_(options),
       files_(std::move(files)),
-      host_(std::make_unique<InMemoryHost>(device)) {}
+      host_(std::make_unique<InMemoryHost>(device, InMemoryHost::Polling::kEachFrame)) {}
 
 LinkResult<LinkEnd> UhidLink::run(microseconds end, Waiter& waiter) {
   if (!options_.wait_for_reader) clock_.start();
@@ -145,11 +146,8 @@ LinkResult<void> UhidLink::create(std::uint8_t interface) {
   uhid_event event{};
   event.type = UHID_CREATE2;
   auto& device = event.u.create2;
-  // Linux names USB devices so.
-  std::string name(spec.manufacturer);
-  if (!name.empty() && !spec.product_name.empty()) name += ' ';
-  put_text(device.name, name += spec.product_name);
-  put_text(device.phys, "limn/simulated/input" + std::to_string(interface));
+  put_text(device.name, linux_name(spec));
+  put_text(device.phys, physical_path(interface));
   put_text(device.uniq, spec.serial_number);
   device.rd_size = static_cast<__u16>(descriptor.size());
   std::copy(descriptor.begin(), descriptor.end(), device.rd_data);

@@ -15,7 +15,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::steady_clock;
 
-constexpr microseconds kCablePeriod{1000};
+constexpr microseconds kFrame{1000};
 constexpr std::chrono::milliseconds kAcceptPause{100};
 
 LinkResult<std::uint16_t> listen_fail(std::uint16_t port, int error) {
@@ -163,7 +163,7 @@ std::optional<SimulationClock::Point> UsbipServer::deadline(microseconds now,
     if (!client->connection.session().imported()) earlier(client->deadline);
   }
   if (!clock_.runs()) return next;
-  earlier(clock_.at(std::min((now / kCablePeriod + 1) * kCablePeriod, end)));
+  earlier(clock_.at(std::min((now / kFrame + 1) * kFrame, end)));
   for (const auto& client : clients_) {
     const auto poll = client->connection.session().next_poll();
     if (poll) earlier(clock_.at(std::min(*poll, end)));

@@ -17,6 +17,13 @@ using usbip::OperationStatus;
 constexpr std::uint32_t kNoPackets = 0xFFFFFFFF;
 constexpr std::uint32_t kMostEndpoint = 15;
 
+constexpr microseconds kFrame{1000};
+
+/// By number, those to the host behind the others.
+constexpr std::size_t place(std::uint8_t endpoint) {
+  return (endpoint & 0x0FU) + ((endpoint & kToHost) != 0 ? 16U : 0U);
+}
+
 tl::unexpected<LinkError> malformed(std::string what) {
   return link_fail(std::move(what), "use a client that speaks USB/IP 1.1.1");
 }
@@ -104,11 +111,6 @@ LinkResult<std::size_t> UsbipSession::take_operation(std::span<const std::uint8_
 
 void UsbipSession::import(microseconds now) {
   exported_.user = this;
-  for (const InterfaceSpec& interface : exported_.device.spec().interfaces) {
-    for (const EndpointSpec& endpoint : interface.endpoints) {
-      pace(endpoint.address).interval = microseconds(1000 * std::max<int>(1, endpoint.interval_ms));
-    }
-  }
   // A client never gives an address: its side of the bus is virtual.
   exported_.device.reset();
   exported_.device.control(set_address(usbip::kDeviceNumber), now, {});
@@ -216,7 +218,7 @@ void UsbipSession::advance(microseconds now) {
   for (auto one = waiting_.begin(); one != waiting_.end();) {
     // A client that does not read: its device keeps its reports, as long as it can.
     if (pending_output() >= kMostOutput) return;
-    if (one->endpoint == 0 || pace(one->endpoint).next > now || !poll(*one, now)) {
+    if (one->endpoint == 0 || next_polls_[place(one->endpoint)] > now || !poll(*one, now)) {
       ++one;
       continue;
     }
@@ -232,13 +234,12 @@ bool UsbipSession::poll(const Waiting& waiting, microseconds now) {
       to_host
           ? device.interrupt_in(waiting.endpoint, now, std::span(transfer_).first(waiting.length))
           : device.interrupt_out(waiting.endpoint, now, waiting.data);
-  Pace& pace = this->pace(waiting.endpoint);
+  microseconds& next = next_polls_[place(waiting.endpoint)];
   if (result.status == TransferStatus::kNak) {
-    const microseconds interval = std::max(pace.interval, microseconds(1000));
-    pace.next = (now / interval + 1) * interval;
+    next = (now / kFrame + 1) * kFrame;
     return false;
   }
-  pace.next = std::max(pace.next, now - kMostCredit * pace.interval) + pace.interval;
+  next = std::max(next, now - kMostCredit * kFrame) + kFrame;
   if (result.status != TransferStatus::kDone) {
     usbip::append_returned_submit(
         output_, waiting.sequence,
@@ -258,7 +259,7 @@ std::optional<microseconds> UsbipSession::next_poll() const noexcept {
   if (pending_output() >= kMostOutput) return next;
   for (const Waiting& one : waiting_) {
     if (one.endpoint == 0) continue;
-    const microseconds due = pace(one.endpoint).next;
+    const microseconds due = next_polls_[place(one.endpoint)];
     next = next ? std::min(*next, due) : due;
   }
   return next;
@@ -267,14 +268,6 @@ std::optional<microseconds> UsbipSession::next_poll() const noexcept {
 bool UsbipSession::listening() const noexcept {
   return std::any_of(waiting_.begin(), waiting_.end(),
                      [](const Waiting& one) { return (one.endpoint & kToHost) != 0; });
-}
-
-UsbipSession::Pace& UsbipSession::pace(std::uint8_t endpoint) noexcept {
-  return paces_[(endpoint & 0x0FU) + ((endpoint & kToHost) != 0 ? 16U : 0U)];
-}
-
-const UsbipSession::Pace& UsbipSession::pace(std::uint8_t endpoint) const noexcept {
-  return paces_[(endpoint & 0x0FU) + ((endpoint & kToHost) != 0 ? 16U : 0U)];
 }
 
 std::span<const std::uint8_t> UsbipSession::output() const noexcept {

@@ -83,10 +83,6 @@ class UsbipSession {
     std::size_t length = 0;
     std::vector<std::uint8_t> data;  // to the device
   };
-  struct Pace {
-    std::chrono::microseconds interval{};
-    std::chrono::microseconds next{};
-  };
 
   std::size_t pending_output() const noexcept { return output_.size() - output_begin_; }
   LinkResult<std::size_t> take_packet(std::span<const std::uint8_t> bytes,
@@ -102,8 +98,6 @@ class UsbipSession {
   LinkResult<void> wait(Waiting waiting);
   void unlink(const usbip::UrbHeader& urb);
   bool poll(const Waiting& waiting, std::chrono::microseconds now);
-  Pace& pace(std::uint8_t endpoint) noexcept;
-  const Pace& pace(std::uint8_t endpoint) const noexcept;
 
   UsbipExport& exported_;
   std::vector<std::uint8_t> input_;
@@ -111,7 +105,7 @@ class UsbipSession {
   std::size_t output_begin_ = 0;  // those before it have gone
   std::deque<Waiting> waiting_;
   std::size_t waiting_bytes_ = 0;
-  std::array<Pace, 32> paces_{};  // by number, IN behind OUT
+  std::array<std::chrono::microseconds, 32> next_polls_{};  // by place()
   std::vector<std::uint8_t> transfer_;
   bool done_ = false;
   std::uint64_t reports_ = 0;

@@ -88,9 +88,17 @@ struct RecordArguments {
   double seconds = 0;  ///< 0: until a signal
 };
 
+/// How other programs get a device: at most one way.
+struct LinkArguments {
+  bool uhid = false;
+  std::optional<std::uint16_t> usbip_port;  ///< 0: any that is free
+  bool wanted() const noexcept { return uhid || usbip_port; }
+};
+
 struct ReplayArguments {
   TraceArguments trace;
   double speed = 1;
+  LinkArguments link;  ///< none: samples go to standard output
   OutputFormat format = OutputFormat::kText;
 };
 
@@ -103,10 +111,12 @@ struct SketchArguments {
 
 struct SimulateArguments {
   std::string device;
-  std::string drawing = "signature";
+  std::string drawing;  ///< empty: "signature" of pens
+  std::string motion;   ///< empty: the first of 3D mice
   std::uint64_t seed = 1;
   bool list = false;
-  std::string output;
+  LinkArguments link;
+  std::string output;  ///< none where there is a link
   OutputFormat format = OutputFormat::kText;
 };
 

@@ -1,9 +1,7 @@
 #include "modeler/app/live_input.hpp"
 
-#include <signal.h>  // sigaction is POSIX
-
 #include <algorithm>
-#include <atomic>
+#include <cstdio>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -108,22 +106,6 @@ std::string what_is_missing(const LiveArguments& live, bool by_id) {
   return by_id ? "no device " + live.device + " is here" : "no pen is here";
 }
 
-std::atomic<LiveReader*> stopped_by_signal = nullptr;
-
-extern "C" void stop_reader(int) {
-  if (LiveReader* reader = stopped_by_signal.load()) reader->stop();
-}
-
-void handle(int signal, void (*handler)(int)) {
-  struct sigaction action {};
-  ::sigaction(signal, nullptr, &action);
-  if (action.sa_handler == SIG_IGN) return;  // as the caller wants it
-  action.sa_handler = handler;
-  ::sigemptyset(&action.sa_mask);
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second Ctrl-C ends the program at once
-  ::sigaction(signal, &action, nullptr);
-}
-
 }  // namespace
 
 tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArguments& live) {
@@ -168,18 +150,6 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArg
     }
   }
   return in_file("", LiveReader::start(*std::move(opened), std::move(hotplug)));
-}
-
-StopOnSignal::StopOnSignal(LiveReader& reader) {
-  stopped_by_signal.store(&reader);
-  handle(SIGINT, stop_reader);
-  handle(SIGTERM, stop_reader);
-}
-
-StopOnSignal::~StopOnSignal() {
-  handle(SIGINT, SIG_DFL);
-  handle(SIGTERM, SIG_DFL);
-  stopped_by_signal.store(nullptr);
 }
 
 }  // namespace limn::app

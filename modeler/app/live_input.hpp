@@ -13,14 +13,4 @@ namespace limn::app {
 /// cannot be. Failure: there is none, or none that may be read.
 tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArguments& live);
 
-/// Lets SIGINT and SIGTERM stop the reader while this lives; a second one ends the program. For one
-/// reader at a time.
-class StopOnSignal {
- public:
-  explicit StopOnSignal(LiveReader& reader);
-  ~StopOnSignal();
-  StopOnSignal(const StopOnSignal&) = delete;
-  StopOnSignal& operator=(const StopOnSignal&) = delete;
-};
-
 }  // namespace limn::app

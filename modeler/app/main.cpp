@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <vector>
 
 #include "modeler/app/command.hpp"
 #include "modeler/app/option_values.hpp"
@@ -84,6 +85,18 @@ void add_seconds(CLI::App& command, double& seconds) {
       ->type_name("S");
 }
 
+/// --uhid and --usbip; gives both, for what they exclude.
+std::vector<CLI::Option*> add_link(CLI::App& command, LinkArguments& link) {
+  CLI::Option* uhid = command.add_flag(
+      "--uhid", link.uhid, "Give the device to the programs of this machine by /dev/uhid");
+  CLI::Option* usbip = add_value(
+      command, "--usbip",
+      [&link](const std::string& text) { return parse_port(text, link.usbip_port.emplace()); },
+      "Serve the device by USB/IP on 127.0.0.1; 0 is any free port, 3240 what usbip expects");
+  usbip->type_name("PORT")->excludes(uhid);
+  return {uhid, usbip};
+}
+
 int run(int argc, char** argv) {
   CLI::App app{
       "limn turns the bytes of pens into samples, strokes and exact B-spline curves.\n"
@@ -148,7 +161,9 @@ int run(int argc, char** argv) {
 
   ReplayArguments replay;
   CLI::App* replay_command = app.add_subcommand(
-      "replay", "Print a recording's pen samples at the times at which they were made");
+      "replay",
+      "Print a recording's pen samples at the times at which they were made, or be its device for "
+      "other programs");
   add_trace(*replay_command, replay.trace);
   add_value(
       *replay_command, "--speed",
@@ -156,6 +171,7 @@ int run(int argc, char** argv) {
       "So many times as fast as it was made")
       ->type_name("X")
       ->default_str("1");
+  add_link(*replay_command, replay.link);
   add_format(*replay_command, replay.format);
   replay_command->callback([&] { outcome = run_replay(replay); });
 
@@ -182,12 +198,18 @@ int run(int argc, char** argv) {
 
   SimulateArguments simulate;
   CLI::App* simulate_command =
-      app.add_subcommand("simulate", "Let a simulated device draw, and record it");
-  simulate_command->add_option("DEVICE", simulate.device, "The device: pen")->type_name("");
+      app.add_subcommand("simulate",
+                         "Let a simulated device draw or move: record it, or give it "
+                         "to other programs");
+  simulate_command->add_option("DEVICE", simulate.device, "The device; see --list")->type_name("");
   CLI::Option* drawing =
-      simulate_command->add_option("--drawing", simulate.drawing, "What it draws; see --list")
+      simulate_command
+          ->add_option("--drawing", simulate.drawing, "What a pen draws; signature unless given")
+          ->type_name("NAME");
+  CLI::Option* motion =
+      simulate_command->add_option("--motion", simulate.motion, "How a 3D mouse is moved")
           ->type_name("NAME")
-          ->capture_default_str();
+          ->excludes(drawing);
   CLI::Option* seed = add_value(
       *simulate_command, "--seed",
       [&simulate](const std::string& text) { return parse_seed(text, simulate.seed); },
@@ -197,10 +219,12 @@ int run(int argc, char** argv) {
                             ->add_option("-o,--output", simulate.output,
                                          "The hid-recorder file to write; - is standard output")
                             ->type_name("TRACE");
-  simulate_command->add_flag("--list", simulate.list, "List devices and drawings")
-      ->excludes(drawing)
-      ->excludes(seed)
-      ->excludes(output);
+  std::vector<CLI::Option*> others = add_link(*simulate_command, simulate.link);
+  for (CLI::Option* link : others) link->excludes(output);
+  others.insert(others.end(), {drawing, motion, seed, output});
+  CLI::Option* list =
+      simulate_command->add_flag("--list", simulate.list, "List devices, drawings and motions");
+  for (CLI::Option* other : others) list->excludes(other);
   add_format(*simulate_command, simulate.format);
   simulate_command->callback([&] { outcome = run_simulate(simulate); });
 

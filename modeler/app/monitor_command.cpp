@@ -15,6 +15,7 @@
 #include "modeler/app/live_input.hpp"
 #include "modeler/app/report_timing.hpp"
 #include "modeler/app/standard_output.hpp"
+#include "modeler/app/stop_on_signal.hpp"
 #include "modeler/app/table.hpp"
 #include "modeler/app/terminal_text.hpp"
 #include "modeler/app/trace_input.hpp"

@@ -71,6 +71,11 @@ std::string parse_speed(std::string_view text, double& speed) {
   return quoted(text) + " is no factor above 0, such as 2";
 }
 
+std::string parse_port(std::string_view text, std::uint16_t& port) {
+  if (read_all(text, port)) return {};
+  return quoted(text) + " is no port of 127.0.0.1 from 0 to 65535, such as 3240";
+}
+
 std::string parse_seed(std::string_view text, std::uint64_t& seed) {
   if (read_all(text, seed)) return {};
   return quoted(text) + " is no whole number from 0 to 2^64 - 1";

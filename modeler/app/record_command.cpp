@@ -17,6 +17,7 @@
 #include "modeler/app/command.hpp"
 #include "modeler/app/live_input.hpp"
 #include "modeler/app/recording_file.hpp"
+#include "modeler/app/stop_on_signal.hpp"
 #include "modeler/app/trace_input.hpp"
 
 namespace limn::app {

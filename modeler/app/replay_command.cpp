@@ -2,16 +2,30 @@
 
 #include "drivers/devices/trace_decoder.hpp"
 #include "drivers/transport/paced_reader.hpp"
+#include "firmware_sim/usb/usb_device.hpp"
 #include "modeler/app/command.hpp"
+#include "modeler/app/device_link.hpp"
+#include "modeler/app/recorded_device.hpp"
 #include "modeler/app/sample_text.hpp"
 #include "modeler/app/standard_output.hpp"
 #include "modeler/app/trace_input.hpp"
 
 namespace limn::app {
+namespace {
+
+Outcome replay_to_others(TraceReader& reader, const ReplayArguments& arguments) {
+  auto recorded = in_file(arguments.trace.path, RecordedDevice::read(reader, arguments.speed));
+  if (!recorded) return tl::unexpected(std::move(recorded.error()));
+  firmware::UsbDevice device(**recorded);
+  return run_device_link(device, (*recorded)->duration(), arguments.link);
+}
+
+}  // namespace
 
 Outcome run_replay(const ReplayArguments& arguments) {
   auto reader = open_trace_input(arguments.trace);
   if (!reader) return tl::unexpected(std::move(reader.error()));
+  if (arguments.link.wanted()) return replay_to_others(**reader, arguments);
   SampleText format(arguments.format, (*reader)->format() != TraceFormat::kStrokeCsv);
   TraceDecoder decoder(
       std::make_unique<PacedReader>(std::move(*reader), arguments.speed, monotonic_clock()),

@@ -43,6 +43,14 @@ TEST(InMemoryHost, PollsEachEndpointAtItsInterval) {
   EXPECT_EQ(host.time(), 20ms);
 }
 
+TEST(InMemoryHost, PollsEachFrameWhereReportsAreToComeWhenTheyAreDue) {
+  CountingDevice device;
+  device.function.count = {2, 0};
+  InMemoryHost host(device, InMemoryHost::Polling::kEachFrame);
+  EXPECT_THAT(events(host, 20ms),
+              ElementsAre("0 plugged", "5000 report 0 #1", "10000 report 0 #2"));
+}
+
 TEST(InMemoryHost, AFasterDeviceThanTheHostWaitsItsTurn) {
   CountingDevice device;
   device.function.count = {3, 0};
@@ -66,7 +74,8 @@ TEST(InMemoryHost, IsAskedInPiecesAsInOne) {
 
 TEST(InMemoryHost, MakesRequestsOnceTheDeviceIsConfigured) {
   CountingDevice device;
-  InMemoryHost host(device, {{set_report(1, ReportKind::kFeature, 2, 4), {2, 7, 8, 9}}});
+  InMemoryHost host(device, InMemoryHost::Polling::kByInterval,
+                    {{set_report(1, ReportKind::kFeature, 2, 4), {2, 7, 8, 9}}});
   EXPECT_THAT(events(host, 1ms), ElementsAre("0 plugged"));
   EXPECT_THAT(device.function.told, ElementsAre(1, 3, 2, 2, 7, 8, 9));
   EXPECT_EQ(device.usb.configuration(), 1);
@@ -78,7 +87,8 @@ TEST(InMemoryHost, SeesTheDeviceGoAndComeBack) {
   device.function.count = {9, 0};
   device.gone = 12ms;
   device.back = 31ms;
-  InMemoryHost host(device, {{set_report(0, ReportKind::kFeature, 2, 4), {2, 1, 1, 1}}});
+  InMemoryHost host(device, InMemoryHost::Polling::kByInterval,
+                    {{set_report(0, ReportKind::kFeature, 2, 4), {2, 1, 1, 1}}});
   EXPECT_THAT(events(host, 36ms),
               ElementsAre("0 plugged", "6000 report 0 #1", "10000 report 0 #2", "12000 unplugged",
                           "31000 plugged", "33000 report 0 #3", "35000 report 0 #4"));
