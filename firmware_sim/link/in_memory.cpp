@@ -10,8 +10,9 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr microseconds kFrame{1000};  // of full speed
+constexpr microseconds kFrame{1000};          // of full speed
 constexpr microseconds kTryPeriod{100'000};   // Linux, too, waits before it tries a device again
+constexpr int kMostAtOnce = 4096;             // of a device that never has nothing to say
 constexpr std::size_t kMostTransfer = 65535;  // wLength has 16 bits
 constexpr std::uint8_t kAddress = 1;
 constexpr std::uint8_t kConfiguration = 1;
@@ -19,14 +20,14 @@ constexpr std::uint8_t kConfiguration = 1;
 }  // namespace
 
 InMemoryHost::InMemoryHost(BusDevice& device, Polling polling, std::vector<HostRequest> requests)
-    : device_(device), requests_(std::move(requests)), data_(kMostTransfer) {
+    : device_(device), polling_(polling), requests_(std::move(requests)), data_(kMostTransfer) {
   const auto interfaces = device.spec().interfaces;
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
     for (const EndpointSpec& endpoint : interfaces[i].endpoints) {
       if ((endpoint.address & kToHost) == 0) continue;
-      const int frames =
-          polling == Polling::kEachFrame ? 1 : std::max<int>(1, endpoint.interval_ms);
-      endpoints_.push_back({static_cast<std::uint8_t>(i), endpoint.address, frames * kFrame, {}});
+      const int frames = polling == Polling::kWhenDue ? 1 : std::max<int>(1, endpoint.interval_ms);
+      endpoints_.push_back(
+          {static_cast<std::uint8_t>(i), endpoint.address, frames * kFrame, {}, 0});
     }
   }
 }
@@ -74,6 +75,7 @@ bool InMemoryHost::configure() {
   for (const SetupPacket& setup : {set_address(kAddress), set_configuration(kConfiguration)}) {
     if (control(setup, data_).status != TransferStatus::kDone) return false;
   }
+  if (!read_descriptors()) return false;
   for (std::size_t i = 0; i < device_.spec().interfaces.size(); ++i) {
     control(set_idle_forever(static_cast<std::uint8_t>(i)), data_);  // devices may refuse it
   }
@@ -85,9 +87,28 @@ bool InMemoryHost::configure() {
   return true;
 }
 
+bool InMemoryHost::read_descriptors() {
+  const auto interfaces = device_.spec().interfaces;
+  descriptors_.assign(interfaces.size(), {});
+  for (std::size_t i = 0; i < interfaces.size(); ++i) {
+    const std::size_t length = std::min(interfaces[i].report_descriptor.size(), data_.size());
+    const auto setup =
+        get_report_descriptor(static_cast<std::uint8_t>(i), static_cast<std::uint16_t>(length));
+    const TransferResult got = control(setup, data_);
+    if (got.status != TransferStatus::kDone) return false;
+    const auto bytes = std::span(data_).first(std::min(got.bytes, data_.size()));
+    descriptors_[i].assign(bytes.begin(), bytes.end());
+  }
+  return true;
+}
+
 std::optional<HostEvent> InMemoryHost::poll(Endpoint& endpoint) {
-  endpoint.next_poll += endpoint.interval;
   const TransferResult got = device_.interrupt_in(endpoint.address, time_, data_);
+  const bool more = got.status == TransferStatus::kDone && polling_ == Polling::kWhenDue;
+  if (!more || ++endpoint.at_once == kMostAtOnce) {
+    endpoint.next_poll += endpoint.interval;
+    endpoint.at_once = 0;
+  }
   if (got.status == TransferStatus::kStall) control(clear_halt(endpoint.address), {});
   // An empty packet is no report to any host.
   if (got.status != TransferStatus::kDone || got.bytes == 0) return std::nullopt;

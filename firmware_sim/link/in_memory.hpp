@@ -40,7 +40,7 @@ class InMemoryHost {
  public:
   enum class Polling : std::uint8_t {
     kByInterval,  ///< as a bus does: a report may wait as long as its endpoint's interval
-    kEachFrame    ///< every millisecond, so that reports come when they are due
+    kWhenDue  ///< every millisecond until it has no more, so that reports come when they are due
   };
 
   /// `device` must outlive this. `requests` are made whenever the device has been configured, as
@@ -59,6 +59,11 @@ class InMemoryHost {
   bool send_output(std::uint8_t interface, std::uint8_t id,
                    std::span<const std::uint8_t> bytes) noexcept;
 
+  /// The report descriptor of an interface, as the device gave it when it was configured last.
+  std::span<const std::uint8_t> report_descriptor(std::uint8_t interface) const noexcept {
+    return descriptors_[interface];
+  }
+
   std::chrono::microseconds time() const noexcept { return time_; }
 
   /// When next() will look at the device again, later than time() or at it.
@@ -70,14 +75,18 @@ class InMemoryHost {
     std::uint8_t address = 0;
     std::chrono::microseconds interval{};
     std::chrono::microseconds next_poll{};
+    int at_once = 0;  // reports since then
   };
 
   std::optional<HostEvent> look_at_cable();
   bool configure();
+  bool read_descriptors();
   std::optional<HostEvent> poll(Endpoint& endpoint);
 
   BusDevice& device_;
+  Polling polling_;
   std::vector<HostRequest> requests_;
+  std::vector<std::vector<std::uint8_t>> descriptors_;  // of reports, one an interface
   std::vector<Endpoint> endpoints_;  // interrupt-in, in the order of the interfaces
   std::chrono::microseconds time_{};
   std::chrono::microseconds next_cable_{};

@@ -20,9 +20,12 @@ constexpr SetupPacket set_idle_forever(std::uint8_t interface) {
   return {0x21, 0x0A, 0, interface, 0};
 }
 
-constexpr SetupPacket get_string(std::uint8_t index, std::uint16_t language,
-                                 std::uint16_t length) {
+constexpr SetupPacket get_string(std::uint8_t index, std::uint16_t language, std::uint16_t length) {
   return {kToHost, 6, static_cast<std::uint16_t>(0x0300 | index), language, length};
+}
+
+constexpr SetupPacket get_report_descriptor(std::uint8_t interface, std::uint16_t length) {
+  return {0x81, 6, 0x2200, interface, length};
 }
 
 constexpr std::uint16_t report_value(ReportKind kind, std::uint8_t id) {

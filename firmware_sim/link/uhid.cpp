@@ -23,14 +23,19 @@ using std::chrono::microseconds;
 
 constexpr const char* kPath = "/dev/uhid";
 
-/// Writes the first `size` bytes of an event; Linux takes those that follow as zeros.
-LinkResult<void> send(const FileDescriptor& file, const uhid_event& event, std::size_t size) {
+/// Writes the first `size` bytes of an event; Linux takes those that follow as zeros. Gives 0, or
+/// the system's error.
+int write_event(const FileDescriptor& file, const uhid_event& event, std::size_t size) {
   while (::write(file.get(), &event, size) < 0) {
-    if (errno == EINTR) continue;
-    return link_fail(std::string("Linux refused an event of /dev/uhid: ") + std::strerror(errno),
-                     "see what the kernel log says of it");
+    if (errno != EINTR) return errno;
   }
-  return {};
+  return 0;
+}
+
+LinkResult<void> result_of(int error) {
+  if (error == 0) return {};
+  return link_fail(std::string("Linux refused an event of /dev/uhid: ") + std::strerror(error),
+                   "see what the kernel log says of it");
 }
 
 /// Copies as much as fits, ended by a zero.
@@ -90,13 +95,12 @@ UhidLink::UhidLink(BusDevice& device, UhidOptions options, std::vector<FileDescr
     : device_(&device),
       options_(options),
       files_(std::move(files)),
-      host_(std::make_unique<InMemoryHost>(device, InMemoryHost::Polling::kEachFrame)) {}
+      host_(std::make_unique<InMemoryHost>(device, InMemoryHost::Polling::kWhenDue)) {}
 
 LinkResult<LinkEnd> UhidLink::run(microseconds end, Waiter& waiter) {
   if (!options_.wait_for_reader) clock_.start();
   auto ended = serve(end, waiter);
-  const auto destroyed = destroy();
-  if (ended && !destroyed) return tl::unexpected(destroyed.error());
+  destroy();
   return ended;
 }
 
@@ -123,7 +127,10 @@ LinkResult<LinkEnd> UhidLink::serve(microseconds end, Waiter& waiter) {
 }
 
 LinkResult<void> UhidLink::handle(const HostEvent& event) {
-  if (event.kind == HostEvent::Kind::kUnplugged) return destroy();
+  if (event.kind == HostEvent::Kind::kUnplugged) {
+    destroy();
+    return {};
+  }
   if (event.kind == HostEvent::Kind::kPlugged) {
     for (std::size_t i = 0; i < files_.size(); ++i) {
       if (auto done = create(static_cast<std::uint8_t>(i)); !done) return done;
@@ -136,13 +143,15 @@ LinkResult<void> UhidLink::handle(const HostEvent& event) {
   const std::size_t size = std::min<std::size_t>(event.bytes.size(), UHID_DATA_MAX);
   input.u.input2.size = static_cast<__u16>(size);
   std::copy_n(event.bytes.begin(), size, input.u.input2.data);
-  ++reports_;
-  return send(files_[event.interface], input, offsetof(uhid_event, u.input2.data) + size);
+  const int error =
+      write_event(files_[event.interface], input, offsetof(uhid_event, u.input2.data) + size);
+  ++(error == 0 ? reports_ : refused_);
+  return result_of(error == EINVAL ? 0 : error);  // no driver took the device
 }
 
 LinkResult<void> UhidLink::create(std::uint8_t interface) {
   const DeviceSpec& spec = device_->spec();
-  const auto descriptor = spec.interfaces[interface].report_descriptor;
+  const auto descriptor = host_->report_descriptor(interface);
   uhid_event event{};
   event.type = UHID_CREATE2;
   auto& device = event.u.create2;
@@ -155,18 +164,15 @@ LinkResult<void> UhidLink::create(std::uint8_t interface) {
   device.vendor = spec.vendor;
   device.product = spec.product;
   device.version = spec.version;
-  return send(files_[interface], event, sizeof event);
+  return result_of(write_event(files_[interface], event, sizeof event));
 }
 
-LinkResult<void> UhidLink::destroy() {
-  if (!std::exchange(created_, false)) return {};
+void UhidLink::destroy() {
+  if (!std::exchange(created_, false)) return;
   uhid_event event{};
   event.type = UHID_DESTROY;
-  LinkResult<void> result;
-  for (const FileDescriptor& file : files_) {
-    if (auto done = send(file, event, sizeof event.type); !done) result = std::move(done);
-  }
-  return result;
+  // One that no driver took is gone already.
+  for (const FileDescriptor& file : files_) write_event(file, event, sizeof event.type);
 }
 
 LinkResult<void> UhidLink::answer(std::uint8_t interface) {
@@ -203,7 +209,7 @@ LinkResult<void> UhidLink::answer_get(std::uint8_t interface, const uhid_event& 
   } else {
     answered.err = EIO;
   }
-  return send(files_[interface], answer, sizeof answer);
+  return result_of(write_event(files_[interface], answer, sizeof answer));
 }
 
 LinkResult<void> UhidLink::answer_set(std::uint8_t interface, uhid_event& event) {
@@ -218,8 +224,8 @@ LinkResult<void> UhidLink::answer_set(std::uint8_t interface, uhid_event& event)
   answer.type = UHID_SET_REPORT_REPLY;
   answer.u.set_report_reply.id = asked.id;
   answer.u.set_report_reply.err = result.status == TransferStatus::kDone ? 0 : EIO;
-  return send(files_[interface], answer,
-              offsetof(uhid_event, u) + sizeof answer.u.set_report_reply);
+  return result_of(write_event(files_[interface], answer,
+                               offsetof(uhid_event, u) + sizeof answer.u.set_report_reply));
 }
 
 }  // namespace limn::firmware

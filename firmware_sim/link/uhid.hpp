@@ -58,6 +58,8 @@ class UhidLink {
 
   /// Reports given to Linux so far.
   std::uint64_t reports() const noexcept { return reports_; }
+  /// Reports that Linux refused, because no driver took the device (its descriptor is bad, say).
+  std::uint64_t refused() const noexcept { return refused_; }
 
  private:
   UhidLink(BusDevice& device, UhidOptions options, std::vector<FileDescriptor> files);
@@ -65,7 +67,7 @@ class UhidLink {
   LinkResult<LinkEnd> serve(std::chrono::microseconds end, Waiter& waiter);
   LinkResult<void> handle(const HostEvent& event);
   LinkResult<void> create(std::uint8_t interface);
-  LinkResult<void> destroy();
+  void destroy();
   LinkResult<void> answer(std::uint8_t interface);
   LinkResult<void> answer_get(std::uint8_t interface, const uhid_event& event);
   LinkResult<void> answer_set(std::uint8_t interface, uhid_event& event);
@@ -77,6 +79,7 @@ class UhidLink {
   SimulationClock clock_;
   bool created_ = false;
   std::uint64_t reports_ = 0;
+  std::uint64_t refused_ = 0;
 };
 
 }  // namespace limn::firmware

@@ -113,6 +113,7 @@ struct SimulateArguments {
   std::string device;
   std::string drawing;  ///< empty: "signature" of pens
   std::string motion;   ///< empty: the first of 3D mice
+  std::vector<std::string> faults;
   std::uint64_t seed = 1;
   bool list = false;
   LinkArguments link;

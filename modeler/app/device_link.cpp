@@ -42,7 +42,10 @@ Outcome run_uhid(firmware::BusDevice& device, microseconds end, firmware::Waiter
       "limn monitor " + ids + "; Ctrl-C ends it");
   const auto ended = link->run(end, waiter);
   if (!ended) return failure_of(ended.error());
-  say(count_of(link->reports(), "report"));
+  say(count_of(link->reports(), "report") +
+      (link->refused() > 0 ? ", and Linux refused " + std::to_string(link->refused()) +
+                                 ": no driver took the device, see dmesg"
+                           : ""));
   return {};
 }
 

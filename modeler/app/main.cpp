@@ -210,6 +210,15 @@ int run(int argc, char** argv) {
       simulate_command->add_option("--motion", simulate.motion, "How a 3D mouse is moved")
           ->type_name("NAME")
           ->excludes(drawing);
+  CLI::Option* fault =
+      simulate_command
+          ->add_option("--fault", simulate.faults,
+                       "What goes wrong: NAME[,at=SECONDS][,p=PROBABILITY][,n=COUNT][,seed=N]; may "
+                       "be given several times")
+          ->type_name("SPEC")
+          ->type_size(1)
+          ->expected(1)
+          ->take_all();
   CLI::Option* seed = add_value(
       *simulate_command, "--seed",
       [&simulate](const std::string& text) { return parse_seed(text, simulate.seed); },
@@ -221,9 +230,9 @@ int run(int argc, char** argv) {
                             ->type_name("TRACE");
   std::vector<CLI::Option*> others = add_link(*simulate_command, simulate.link);
   for (CLI::Option* link : others) link->excludes(output);
-  others.insert(others.end(), {drawing, motion, seed, output});
-  CLI::Option* list =
-      simulate_command->add_flag("--list", simulate.list, "List devices, drawings and motions");
+  others.insert(others.end(), {drawing, motion, fault, seed, output});
+  CLI::Option* list = simulate_command->add_flag("--list", simulate.list,
+                                                 "List devices, drawings, motions and faults");
   for (CLI::Option* other : others) list->excludes(other);
   add_format(*simulate_command, simulate.format);
   simulate_command->callback([&] { outcome = run_simulate(simulate); });

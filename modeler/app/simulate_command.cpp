@@ -5,6 +5,8 @@
 #include "drivers/transport/pen_setup.hpp"
 #include "firmware_sim/devices/catalogue.hpp"
 #include "firmware_sim/devices/drawings.hpp"
+#include "firmware_sim/devices/faults.hpp"
+#include "firmware_sim/devices/faulty_device.hpp"
 #include "firmware_sim/devices/motions.hpp"
 #include "firmware_sim/devices/pen_session.hpp"
 #include "firmware_sim/link/in_memory.hpp"
@@ -29,6 +31,9 @@ using std::chrono::microseconds;
 /// So that a report that is due with the hand's last movement is still polled for.
 constexpr microseconds kLastPoll{100'000};
 
+constexpr std::string_view kPen = "pen";
+constexpr const char* kUsualDrawing = "signature";
+
 Outcome print_list(OutputFormat format) {
   Table table({{"kind", "kind"}, {"name", "name"}, {"description", "description"}});
   const auto add = [&table](const char* kind, const auto& infos) {
@@ -39,13 +44,14 @@ Outcome print_list(OutputFormat format) {
   add("device", firmware::simulated_devices());
   add("drawing", firmware::drawings());
   add("motion", firmware::motions());
+  add("fault", firmware::faults());
   return print(table.print(format));
 }
 
-template <class Info>
-std::vector<std::string_view> names_of(std::span<const Info> infos) {
+template <class Infos>
+std::vector<std::string_view> names_of(const Infos& infos) {
   std::vector<std::string_view> names;
-  for (const Info& info : infos) names.push_back(info.name);
+  for (const auto& info : infos) names.push_back(info.name);
   return names;
 }
 
@@ -70,13 +76,32 @@ tl::expected<std::unique_ptr<firmware::SimulatedDevice>, Failure> make_device(
   }
   std::string movement = pen ? arguments.drawing : arguments.motion;
   const auto known = pen ? names_of(firmware::drawings()) : names_of(firmware::motions());
-  if (movement.empty()) movement = pen ? "signature" : known.front();
+  if (movement.empty()) movement = pen ? kUsualDrawing : known.front();
   if (std::find(known.begin(), known.end(), movement) == known.end()) {
     return usage_error(
         std::string("there is no ") + (pen ? "drawing '" : "motion '") + movement + "'",
         suggest(movement, known));
   }
   return firmware::make_simulated_device(arguments.device, movement, arguments.seed);
+}
+
+tl::expected<std::vector<firmware::FaultSpec>, Failure> parse_faults(
+    const std::vector<std::string>& texts) {
+  std::vector<firmware::FaultSpec> faults;
+  for (const std::string& text : texts) {
+    const auto parsed = firmware::parse_fault(text);
+    if (parsed.unknown_name) {
+      const std::string name = text.substr(0, text.find(','));
+      return usage_error("there is no fault '" + name + "'",
+                         suggest(name, names_of(firmware::faults())));
+    }
+    if (!parsed.fault) {
+      return usage_error("--fault " + parsed.error,
+                         "NAME[,at=SECONDS][,p=PROBABILITY][,n=COUNT][,seed=N]");
+    }
+    faults.push_back(*parsed.fault);
+  }
+  return faults;
 }
 
 /// What Linux's wacom driver asks of a tablet that is a mouse until then: feature report 2, mode 2.
@@ -87,8 +112,8 @@ std::vector<firmware::HostRequest> driver_requests(const firmware::DeviceSpec& s
 }
 
 /// The head of a recording's device: what USB tells of an interface before its first report.
-TraceDevice described(const firmware::DeviceSpec& spec, std::uint8_t interface) {
-  const auto descriptor = spec.interfaces[interface].report_descriptor;
+TraceDevice described(const firmware::DeviceSpec& spec, std::uint8_t interface,
+                      std::span<const std::uint8_t> descriptor) {
   TraceDevice device;
   device.index = interface;
   device.name = firmware::linux_name(spec);
@@ -100,11 +125,19 @@ TraceDevice described(const firmware::DeviceSpec& spec, std::uint8_t interface) 
   return device;
 }
 
+/// Precondition: there is such a drawing.
+firmware::PenSession session_of(const SimulateArguments& arguments) {
+  const std::string& drawing = arguments.drawing;
+  return {*firmware::find_drawing(drawing.empty() ? kUsualDrawing : drawing), arguments.seed};
+}
+
 /// The pen on its own, without a bus before it: its bytes for a seed are promised not to change.
 Expected<void> record_pen(const firmware::DeviceSpec& spec, firmware::PenSession session,
                           ByteSink& sink) {
   HidRecorderWriter writer(sink);
-  if (auto written = writer.describe(described(spec, 0)); !written) return written;
+  if (auto written = writer.describe(described(spec, 0, firmware::HidPen::report_descriptor()));
+      !written)
+    return written;
   firmware::TimedReport report;
   while (session.next(report)) {
     if (auto written = writer.write(Report{0, report.time, report.bytes}); !written) return written;
@@ -117,7 +150,7 @@ class Recorder {
  public:
   Recorder(firmware::BusDevice& device, ByteSink& sink)
       : spec_(device.spec()),
-        host_(device, InMemoryHost::Polling::kEachFrame, driver_requests(spec_)),
+        host_(device, InMemoryHost::Polling::kWhenDue, driver_requests(spec_)),
         writer_(sink) {}
 
   Expected<void> record(microseconds end) {
@@ -138,7 +171,9 @@ class Recorder {
   /// What USB tells of the device before its first report, and what its initialisation learnt.
   Expected<void> plugged() {
     for (std::uint8_t i = 0; i < spec_.interfaces.size(); ++i) {
-      if (auto written = writer_.describe(described(spec_, i)); !written) return written;
+      if (auto written = writer_.describe(described(spec_, i, host_.report_descriptor(i)));
+          !written)
+        return written;
     }
     const PenInitialization* const sequence = find_pen_initialization(spec_.vendor, spec_.product);
     if (sequence == nullptr || sequence->interface_number >= spec_.interfaces.size()) return {};
@@ -169,7 +204,9 @@ Outcome run_simulate(const SimulateArguments& arguments) {
   auto device = make_device(arguments);
   if (!device) return tl::unexpected(std::move(device.error()));
   if (arguments.list) return print_list(arguments.format);
-  firmware::BusDevice& bus = (*device)->bus();
+  const auto faults = parse_faults(arguments.faults);
+  if (!faults) return tl::unexpected(faults.error());
+  firmware::FaultyDevice bus((*device)->bus(), *faults);
   const microseconds end = (*device)->duration();
   if (arguments.link.wanted()) return run_device_link(bus, end, arguments.link);
   if (arguments.output.empty()) {
@@ -181,10 +218,12 @@ Outcome run_simulate(const SimulateArguments& arguments) {
   if (!file) return tl::unexpected(std::move(file.error()));
   // The recording goes to the file in one write: a pipe or a full disk is told once, at its end.
   StringSink recording;
-  auto written = Recorder(bus, recording)
-                     .record(end + kLastPoll)
-                     .and_then([&] { return file->write(recording.text()); })
-                     .and_then([&] { return file->commit(); });
+  auto written = arguments.device == kPen && faults->empty()
+                     ? record_pen(bus.spec(), session_of(arguments), recording)
+                     : Recorder(bus, recording).record(end + kLastPoll);
+  written = written.and_then([&] { return file->write(recording.text()); }).and_then([&] {
+    return file->commit();
+  });
   return in_file(arguments.output, written);
 }
 

@@ -43,12 +43,25 @@ TEST(InMemoryHost, PollsEachEndpointAtItsInterval) {
   EXPECT_EQ(host.time(), 20ms);
 }
 
-TEST(InMemoryHost, PollsEachFrameWhereReportsAreToComeWhenTheyAreDue) {
+TEST(InMemoryHost, MayPollSoThatReportsComeWhenTheyAreDue) {
   CountingDevice device;
   device.function.count = {2, 0};
-  InMemoryHost host(device, InMemoryHost::Polling::kEachFrame);
+  InMemoryHost host(device, InMemoryHost::Polling::kWhenDue);
   EXPECT_THAT(events(host, 20ms),
               ElementsAre("0 plugged", "5000 report 0 #1", "10000 report 0 #2"));
+  EXPECT_THAT(host.report_descriptor(1), testing::ElementsAreArray(kCountingDescriptor));
+}
+
+TEST(InMemoryHost, ManyThatAreDueComeAtOnceAndNotForEver) {
+  CountingDevice device;
+  device.function.count = {3, 5000};
+  device.function.period = 1us;
+  InMemoryHost host(device, InMemoryHost::Polling::kWhenDue);
+  EXPECT_THAT(events(host, 1ms), testing::SizeIs(1 + 3 + 1000));
+  device.function.period = 0us;  // all of them, whenever it is asked
+  EXPECT_EQ(events(host, 2ms).size(), 4000U);
+  device.function.count[1] = 20'000;
+  EXPECT_EQ(events(host, 3ms).size(), 4096U) << "the time goes on, whatever a device says";
 }
 
 TEST(InMemoryHost, AFasterDeviceThanTheHostWaitsItsTurn) {
