@@ -66,7 +66,10 @@ std::optional<HostEvent> InMemoryHost::look_at_cable() {
   next_try_ = time_ + kTryPeriod;
   if (!configure()) return std::nullopt;
   configured_ = true;
-  for (Endpoint& endpoint : endpoints_) endpoint.next_poll = time_ + endpoint.interval;
+  for (Endpoint& endpoint : endpoints_) {
+    endpoint.next_poll = time_ + endpoint.interval;
+    endpoint.at_once = 0;
+  }
   return HostEvent{HostEvent::Kind::kPlugged, time_, 0, {}};
 }
 

@@ -134,7 +134,7 @@ bool UsbipServer::serve(Client& client, microseconds now) {
   if (!clock_.runs() && session.imported() && session.listening()) clock_.start();
   if (state && *state == UsbipConnection::State::kOpen) {
     if (session.imported() || steady_clock::now() < client.deadline) return true;
-    tell(UsbipNotice::Kind::kRefused, "a client was closed: it asked for nothing in 10 s");
+    tell(UsbipNotice::Kind::kRefused, "a client was closed: it took no device in 10 s");
     return false;
   }
   if (!state) {

@@ -77,7 +77,7 @@ const std::vector<Layer>& layers() {
       {"tests",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
        {"gtest/", "gmock/", "benchmark/", "sanitizer/", "Eigen/", "nlohmann/", "cairo",
-        "opencascade", "sisl.h", "umockdev.h", "posix", "dlfcn.h", "linux/", "sys/"}},
+        "opencascade", "sisl.h", "umockdev.h", "posix", "dlfcn.h", "linux/", "netinet/", "sys/"}},
   };
   return table;
 }
