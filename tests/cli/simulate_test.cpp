@@ -74,8 +74,12 @@ TEST(Simulate, EveryPenIsRecordedInItsFullModeAndDecodes) {
 
 TEST(Simulate, EveryDeviceAndMovementGivesTheSameBytesAgain) {
   for (const std::string& name : listed("device")) {
-    const auto simulate = [&name] {
-      return run_limn({"simulate", name, "--fault", "drop", "--fault", "unplug", "-o", "-"}).out;
+    const bool mouse = name.starts_with("space");
+    const auto simulate = [&] {
+      return run_limn({"simulate", name, mouse ? "--motion" : "--drawing",
+                       mouse ? "twist" : "circle", "--fault", "drop", "--fault", "unplug", "-o",
+                       "-"})
+          .out;
     };
     const std::string trace = simulate();
     EXPECT_THAT(trace, HasSubstr("\nE: ")) << name;
