@@ -160,7 +160,7 @@ void add_driver(const ListedDevice& listed, std::vector<Finding>& out) {
 
 Finding queues_finding() {
   return {Finding::State::kGood, "queues",
-          "the kernel keeps 64 reports a reader on hidraw and tells nobody of more; 'limn monitor' "
+          "the kernel keeps 63 reports a reader on hidraw and tells nobody of more; 'limn monitor' "
           "and 'limn record' count what may be lost, and the overruns that event nodes tell of",
           "where they count losses, end what keeps this machine busy, or record to a faster disk"};
 }

@@ -37,7 +37,7 @@ std::vector<std::string> texts(const std::vector<Finding>& findings) {
 }
 
 constexpr const char* kQueues =
-    "good queues: the kernel keeps 64 reports a reader on hidraw and tells nobody of more; 'limn "
+    "good queues: the kernel keeps 63 reports a reader on hidraw and tells nobody of more; 'limn "
     "monitor' and 'limn record' count what may be lost, and the overruns that event nodes tell of";
 
 TEST(Diagnose, ABareSystem) {
