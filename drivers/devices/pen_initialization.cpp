@@ -152,35 +152,6 @@ Expected<PenParameters> checked(PenParameters parameters, std::int32_t lines_per
 
 }  // namespace
 
-std::array<std::uint8_t, 8> setup_packet(const PenInitStep& step,
-                                         std::uint8_t interface_number) noexcept {
-  const auto low = [](std::size_t value) { return static_cast<std::uint8_t>(value & 0xFFU); };
-  const auto high = [](std::size_t value) { return static_cast<std::uint8_t>(value >> 8 & 0xFFU); };
-  if (step.action == A::kReadString) {
-    constexpr std::uint8_t kGetDescriptor = 6;
-    constexpr std::uint8_t kStringType = 3;
-    return {0x80,
-            kGetDescriptor,
-            step.string_index,
-            kStringType,
-            low(kPenStringLanguage),
-            high(kPenStringLanguage),
-            low(kPenStringLength),
-            high(kPenStringLength)};
-  }
-  constexpr std::uint8_t kSetReport = 9;
-  constexpr std::uint8_t kFeature = 3;
-  const std::uint8_t id = step.bytes.empty() ? std::uint8_t{0} : step.bytes[0];
-  return {0x21,
-          kSetReport,
-          id,
-          kFeature,
-          interface_number,
-          0,
-          low(step.bytes.size()),
-          high(step.bytes.size())};
-}
-
 std::span<const PenInitialization> pen_initializations() noexcept { return kSequences; }
 
 const PenInitialization* find_pen_initialization(std::uint16_t vendor,

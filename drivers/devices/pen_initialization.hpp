@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -45,10 +44,6 @@ struct PenInitStep {
 inline constexpr std::uint16_t kPenStringLanguage = 0x0409;
 /// As much as the vendors' drivers ask for: more than a descriptor can have.
 inline constexpr std::uint16_t kPenStringLength = 0x0100;
-
-/// The eight bytes of the control request that a kReadString or kSetFeature step is.
-std::array<std::uint8_t, 8> setup_packet(const PenInitStep& step,
-                                         std::uint8_t interface_number) noexcept;
 
 /// What a device needs before it reports as its row says.
 struct PenInitialization {

@@ -15,9 +15,6 @@
 namespace limn {
 namespace {
 
-constexpr std::uint8_t kGetDescriptor = 6;
-constexpr std::uint16_t kStringType = 3;
-
 /// Bus and address.
 using UsbPlace = std::pair<unsigned, unsigned>;
 
@@ -125,8 +122,7 @@ Expected<void> UsbDevice::write(const ControlRequest& request,
 Expected<std::vector<std::uint8_t>> UsbDevice::read_string(std::uint8_t index,
                                                            std::uint16_t language,
                                                            std::uint16_t length) {
-  const auto value = static_cast<std::uint16_t>(kStringType << 8 | index);
-  return read({LIBUSB_ENDPOINT_IN, kGetDescriptor, value, language}, length, Silence::kIsAnAnswer);
+  return read(string_request(index, language), length, Silence::kIsAnAnswer);
 }
 
 }  // namespace limn

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/transport/control_request.hpp"
 #include "drivers/transport/device_control.hpp"
 #include "input/base/error.hpp"
 
@@ -14,14 +15,6 @@ struct libusb_context;
 struct libusb_device_handle;
 
 namespace limn {
-
-/// The fields of a control request (USB 2.0, 9.3).
-struct ControlRequest {
-  std::uint8_t type = 0;  ///< bmRequestType; the direction bit must fit read() or write()
-  std::uint8_t request = 0;
-  std::uint16_t value = 0;
-  std::uint16_t index = 0;
-};
 
 /// A USB device, opened by libusb; nothing of it is claimed, so Linux's drivers keep it. Requests
 /// to the device as a whole disturb nobody; those to an interface need it claimed.
@@ -42,7 +35,8 @@ class UsbDevice {
   /// Whether a stall, a timeout or a disturbed transfer is an error or an empty answer.
   enum class Silence { kIsAnError, kIsAnAnswer };
 
-  /// What the device sends back, at most `length` bytes.
+  /// What the device sends back, at most `length` bytes; the direction bit of `request` must fit
+  /// read() or write().
   Expected<std::vector<std::uint8_t>> read(const ControlRequest& request, std::uint16_t length,
                                            Silence silence);
 

@@ -15,13 +15,8 @@ constexpr std::size_t kMostReportDescriptor = 4096;  // Linux takes no more
 constexpr std::uint8_t kHidDescriptor = 0x21;
 constexpr std::uint16_t kReportDescriptor = 0x22;
 constexpr std::uint8_t kGetDescriptor = 6;
-constexpr std::uint8_t kGetReport = 1;
-constexpr std::uint8_t kSetReport = 9;
-constexpr std::uint16_t kFeature = 3;
 // bmRequestType: direction, type and recipient (USB 2.0, 9.3).
 constexpr std::uint8_t kFromInterface = 0x81;
-constexpr std::uint8_t kClassFromInterface = 0xA1;
-constexpr std::uint8_t kClassToInterface = 0x21;
 
 /// wDescriptorLength of the report descriptor that a HID descriptor (HID 1.11, 6.2.1) announces
 /// first; 0 where `extra`, the descriptors behind the interface's, holds none.
@@ -150,16 +145,12 @@ Expected<void> UsbInterface::write_interrupt(std::uint8_t endpoint,
 
 Expected<void> UsbInterface::set_feature(std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return {};
-  const auto value = static_cast<std::uint16_t>(kFeature << 8 | bytes[0]);
-  // An ID of 0 stands for no ID, and does not travel.
-  return usb_->write({kClassToInterface, kSetReport, value, number_},
-                     bytes.subspan(bytes[0] == 0 ? 1 : 0));
+  return usb_->write(set_feature_request(bytes[0], number_), feature_data(bytes));
 }
 
 Expected<std::vector<std::uint8_t>> UsbInterface::get_feature(std::uint8_t id, std::size_t length) {
-  const auto value = static_cast<std::uint16_t>(kFeature << 8 | id);
   const std::size_t before = id == 0 ? 1 : 0;
-  auto bytes = usb_->read({kClassFromInterface, kGetReport, value, number_},
+  auto bytes = usb_->read(get_feature_request(id, number_),
                           static_cast<std::uint16_t>(std::min<std::size_t>(length, 0xFFFF)),
                           UsbDevice::Silence::kIsAnError);
   if (bytes && before > 0) bytes->insert(bytes->begin(), 0);

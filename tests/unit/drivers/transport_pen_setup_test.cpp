@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <iterator>
 
+#include "drivers/transport/control_request.hpp"
 #include "drivers/transport/pen_setup.hpp"
 #include "tests/support/recordings.hpp"
 #include "tests/support/usb_capture.hpp"
@@ -19,7 +21,16 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// Answers each control request as the device in a capture did, and keeps what was sent.
+/// The eight bytes on the wire, which libusb makes of the same fields.
+std::array<std::uint8_t, 8> setup_packet(const ControlRequest& request, std::size_t length) {
+  const auto low = [](std::size_t value) { return static_cast<std::uint8_t>(value & 0xFF); };
+  const auto high = [](std::size_t value) { return static_cast<std::uint8_t>(value >> 8 & 0xFF); };
+  return {request.type,       request.request,     low(request.value), high(request.value),
+          low(request.index), high(request.index), low(length),        high(length)};
+}
+
+/// Answers each control request as the device in a capture did, and keeps what was sent: the setup
+/// packets of the requests that UsbInterface gives to libusb.
 class CapturedDevice final : public DeviceControl {
  public:
   CapturedDevice(std::vector<UsbControl> controls, std::uint8_t interface_number)
@@ -27,17 +38,16 @@ class CapturedDevice final : public DeviceControl {
 
   Expected<Bytes> read_string(std::uint8_t index, std::uint16_t language,
                               std::uint16_t length) override {
-    const auto low = [](unsigned value) { return static_cast<std::uint8_t>(value & 0xFF); };
-    return answer(
-        {0x80, 6, index, 3, low(language), low(language >> 8), low(length), low(length >> 8)}, {});
+    return answer(setup_packet(string_request(index, language), length), {});
   }
   Expected<void> write_interrupt(std::uint8_t, std::span<const std::uint8_t>) override {
     ADD_FAILURE() << "no such request was captured";
     return {};
   }
   Expected<void> set_feature(std::span<const std::uint8_t> bytes) override {
-    answer({0x21, 9, bytes[0], 3, interface_, 0, static_cast<std::uint8_t>(bytes.size()), 0},
-           {bytes.begin(), bytes.end()});
+    const auto data = feature_data(bytes);
+    answer(setup_packet(set_feature_request(bytes[0], interface_), data.size()),
+           {data.begin(), data.end()});
     return {};
   }
   Expected<Bytes> get_feature(std::uint8_t, std::size_t) override { return Bytes(); }
