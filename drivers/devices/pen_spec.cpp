@@ -93,8 +93,8 @@ FamilyAxes family_axes(PenFamily family) noexcept {
 }
 
 std::span<const PenSpec> pen_specs() noexcept {
-  static const std::vector<PenSpec> rows = all_pens();
-  return rows;
+  static const std::vector<PenSpec> kRows = all_pens();
+  return kRows;
 }
 
 const PenSpec* find_pen_spec(std::uint16_t vendor, std::uint16_t product) noexcept {

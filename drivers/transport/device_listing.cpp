@@ -13,7 +13,7 @@ namespace {
 std::string narrow(const wchar_t* wide) {
   std::string out;
   for (; wide != nullptr && *wide != L'\0'; ++wide) {
-    const auto c = static_cast<std::uint32_t>(*wide);
+    const char32_t c{static_cast<char32_t>(*wide)};
     if (c < 0x80) {
       out += static_cast<char>(c);
     } else if (c < 0x800) {

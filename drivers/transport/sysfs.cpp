@@ -50,7 +50,8 @@ std::vector<SysfsDevice> SysfsDevice::list(const std::string& root, const std::s
                                            std::string_view prefix) {
   std::vector<SysfsDevice> found;
   std::error_code error;
-  for (fs::directory_iterator entry(root + "/sys" + where, error), end; !error && entry != end;
+  const fs::path folder = (root + "/sys").append(where);
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     if (!name.starts_with(prefix)) continue;

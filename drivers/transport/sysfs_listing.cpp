@@ -240,8 +240,9 @@ std::vector<ListedDevice> list_free_usb_devices(const std::string& root) {
 }
 
 Expected<std::vector<ListedDevice>> list_devices() {
+  std::vector<ListedDevice> devices;
   auto hid = list_hid_devices();
-  std::vector<ListedDevice> devices = hid ? *std::move(hid) : std::vector<ListedDevice>();
+  if (hid) devices.swap(*hid);
   const auto add = [&devices](std::vector<ListedDevice> more) {
     std::move(more.begin(), more.end(), std::back_inserter(devices));
   };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <system_error>
 
 namespace limn::firmware {
@@ -64,7 +65,7 @@ std::string apply(std::string_view setting, FaultSpec& fault) {
     if (!seconds || !(*seconds >= 0 && *seconds <= kDay)) {
       return quoted + ": at= takes seconds, 0 to 86400";
     }
-    fault.at = std::chrono::microseconds(static_cast<std::int64_t>(*seconds * 1e6 + 0.5));
+    fault.at = std::chrono::microseconds(std::llround(*seconds * 1e6));
   } else if (key == "p") {
     const auto probability = number<double>(text);
     if (!probability || !(*probability > 0 && *probability <= 1)) {

@@ -121,12 +121,12 @@ void append_seconds(std::string& out, Timestamp time) {
 }
 
 void append_counted_bytes(std::string& out, std::span<const std::uint8_t> bytes) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
+  constexpr std::string_view kHexadecimal = "0123456789abcdef";
   append_number(out, bytes.size());
   for (const std::uint8_t byte : bytes) {
     out += ' ';
-    out += kDigits[byte >> 4];
-    out += kDigits[byte & 0xF];
+    out += kHexadecimal[byte >> 4];
+    out += kHexadecimal[byte & 0xF];
   }
   out += '\n';
 }

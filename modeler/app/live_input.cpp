@@ -19,7 +19,7 @@ tl::unexpected<Failure> no_device(ErrorCode code, std::string what, std::string 
   return tl::unexpected(Failure{"", Error{code, "", std::move(what), std::move(remedy)}});
 }
 
-void print_trouble(std::string at, std::string before, const Error& error) {
+void print_trouble(std::string at, const std::string& before, const Error& error) {
   print_error(Failure{"", Error{error.code, std::move(at), before + error.what, error.remedy}});
 }
 

@@ -170,8 +170,10 @@ class Recorder {
  private:
   /// What USB tells of the device before its first report, and what its initialisation learnt.
   Expected<void> plugged() {
-    for (std::uint8_t i = 0; i < spec_.interfaces.size(); ++i) {
-      if (auto written = writer_.describe(described(spec_, i, host_.report_descriptor(i)));
+    for (std::size_t i = 0; i < spec_.interfaces.size(); ++i) {
+      const auto number = static_cast<std::uint8_t>(i);
+      if (auto written =
+              writer_.describe(described(spec_, number, host_.report_descriptor(number)));
           !written)
         return written;
     }

@@ -67,7 +67,8 @@ TEST(DescriptorBuilder, AUsageOfAnotherPageInOneMainItemCarriesItsPage) {
 
 TEST(DescriptorBuilder, OutputAndFeatureReportsAreCountedByThemselves) {
   DescriptorBuilder built;
-  built.report_id(ReportId{4}).usage(usages::kGenericIndicator).logical({0, 1}).report_size(1);
+  constexpr ReportId kIndicators{4};  // clang 14 crashes on the same expression as an argument
+  built.report_id(kIndicators).usage(usages::kGenericIndicator).logical({0, 1}).report_size(1);
   const std::size_t before = built.size();
   built.output(InputFlags::kVariable).report_size(7).output(InputFlags::kConstant);
   EXPECT_THAT(bytes(built).at(before), 0x91);
@@ -76,7 +77,7 @@ TEST(DescriptorBuilder, OutputAndFeatureReportsAreCountedByThemselves) {
   built.usage(usages::kVendor1).report_size(8, 2).feature(InputFlags::kVariable);
   EXPECT_THAT(bytes(built)[built.size() - 2], 0xB1);
   EXPECT_TRUE(built.is_well_formed());
-  EXPECT_EQ(built.report_bytes(ReportId{4}), 1U) << "no input";
+  EXPECT_EQ(built.report_bytes(kIndicators), 1U) << "no input";
   built.usage(usages::kVendor1).report_size(3, 1).feature(InputFlags::kVariable);
   EXPECT_FALSE(built.is_well_formed()) << "a feature report of no whole bytes";
 }
