@@ -28,6 +28,7 @@
 #include "drivers/transport/usb_transport.hpp"
 #include "tests/support/alloc_guard.hpp"
 #include "tests/support/recordings.hpp"
+#include "tests/unit/drivers/counting_sink.hpp"
 
 namespace limn::test {
 namespace {
@@ -38,14 +39,6 @@ int refuse(const Error& error) {
   std::fprintf(stderr, "%s: %s; %s\n", error.at.c_str(), error.what.c_str(), error.remedy.c_str());
   return kFailed;
 }
-
-class CountingSink final : public TransportSink {
- public:
-  void report(Timestamp, std::span<const std::uint8_t>) noexcept override { ++reports; }
-  void frame(Timestamp, std::span<const EvdevEvent>) noexcept override {}
-  void lost(std::uint32_t, bool) noexcept override {}
-  int reports = 0;
-};
 
 int drain(const ListedDevice& listed) {
   auto opened = open_device(listed);

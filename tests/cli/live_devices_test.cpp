@@ -12,11 +12,13 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/cli/live_tablet.hpp"
 #include "tests/cli/run_limn.hpp"
 #include "tests/cli/sample_traces.hpp"
 #include "tests/support/recordings.hpp"
 #include "tests/support/simulated_tablet.hpp"
 #include "tests/support/spacenavd_server.hpp"
+#include "tests/support/umockdev_text.hpp"
 
 namespace limn::test {
 namespace {
@@ -25,32 +27,6 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
-
-constexpr const char* kUmockdev = "/usr/bin/umockdev-run";
-
-/// The report descriptor of small_pen_header(), as hexadecimal digits.
-std::string descriptor_digits() {
-  const std::string head = small_pen_header();
-  std::string digits;
-  for (const char c : head.substr(6, head.find('\n') - 6)) {  // after "R: 59 "
-    if (c != ' ') digits += static_cast<char>(std::toupper(c));
-  }
-  return digits;
-}
-
-std::string padded(std::string digits, std::size_t bytes) {
-  digits.resize(2 * bytes, '0');
-  return digits;
-}
-
-std::string digits_of(std::string_view text) {
-  std::string digits;
-  for (const char c : text) {
-    digits += "0123456789ABCDEF"[static_cast<unsigned char>(c) >> 4];
-    digits += "0123456789ABCDEF"[static_cast<unsigned char>(c) & 15];
-  }
-  return digits;
-}
 
 /// The small pen on hidraw0, drawing `reports` reports 15 ms apart (umockdev runs closer ones
 /// together).
@@ -72,7 +48,7 @@ class SimulatedPen {
                              "E: HID_ID=0003:00001209:00000001\nE: HID_NAME=Small Pen\n"
                              "E: HID_PHYS=usb-1/input0\nE: HID_UNIQ=\nE: SUBSYSTEM=hid\n"
                              "H: report_descriptor=" +
-                             descriptor_digits() +
+                             digits_of(small_pen_descriptor()) +
                              "\n\n"
                              "P: " +
                              usb +
@@ -85,14 +61,11 @@ class SimulatedPen {
                              "A: idVendor=1209\\n\nA: idProduct=0001\\n\nA: bcdDevice=0100\\n\n"
                              "A: product=Small Pen\\n\nA: manufacturer=Limn\\n\n")
                   .string();
-    const std::string size = "3B000000";  // 59, little-endian
     ioctls_ = folder_
-                  .write("pen.ioctl",
-                         "@DEV /dev/hidraw0\nHIDIOCGRAWINFO 0 0300000009120100\n"
-                         "HIDIOCGRDESCSIZE 0 " +
-                             size + "\nHIDIOCGRDESC 0 " + size + padded(descriptor_digits(), 4096) +
-                             "\nHIDIOCGRAWNAME 10 " + padded(digits_of("Small Pen"), 256) +
-                             "\nHIDIOCGRAWPHYS 13 " + padded(digits_of("usb-1/input0"), 256) + "\n")
+                  .write("pen.ioctl", hidraw_ioctls({.vendor = 0x1209,
+                                                     .product = 1,
+                                                     .report_descriptor = small_pen_descriptor(),
+                                                     .name = "Small Pen"}))
                   .string();
     std::string script;
     for (int i = 0; i < reports; ++i) {
@@ -107,10 +80,8 @@ class SimulatedPen {
 
   /// Runs limn on it; `before` may hold a command that runs it in turn.
   CommandRun limn(const std::string& words, const std::string& before = {}) const {
-    // AddressSanitizer wants to be the first library; umockdev's comes before it, harmlessly.
-    return run_shell("export ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0; " +
-                     std::string(kUmockdev) + " -d " + device_ + " -i /dev/hidraw0=" + ioctls_ +
-                     " -s /dev/hidraw0=" + script_ + " -- " + before + " \"$0\" " + words);
+    return run_umockdev("-d " + device_ + " -i /dev/hidraw0=" + ioctls_ +
+                        " -s /dev/hidraw0=" + script_ + " -- " + before + " \"$0\" " + words);
   }
 
  private:
@@ -123,55 +94,8 @@ class SimulatedPen {
 class LiveDevices : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(kUmockdev)) GTEST_SKIP() << "umockdev is not installed";
+    if (!has_umockdev()) GTEST_SKIP() << "umockdev is not installed";
   }
-};
-
-/// A tablet on both sides of Linux, whose event node tells a stroke.
-class LiveTablet {
- public:
-  /// `edit` changes what umockdev is told of the devices.
-  explicit LiveTablet(const std::function<void(std::string&)>& edit = {}) {
-    std::string text = SimulatedTablet::usb_and_hid_devices() + SimulatedTablet::hidraw_device() +
-                       SimulatedTablet::event_device();
-    if (edit) edit(text);
-    device_ = folder_.write("tablet.umockdev", text).string();
-    hidraw_ = folder_.write("hidraw.ioctl", SimulatedTablet::hidraw_ioctls()).string();
-    event_ = folder_.write("event.ioctl", SimulatedTablet::event_ioctls({})).string();
-    // umockdev plays the first event at once, so that is none that counts.
-    std::string events = "E: 0.000000 0000 0000 0\n";
-    PenAction before;
-    for (int i = 0; i <= kSteps; ++i) {
-      const bool down = i > 1 && i < kSteps - 1;
-      const PenAction action{i < kSteps, down, false, 1000 + 100 * i, 2000, down ? 500 : 0};
-      for (const KernelEvent& event : SimulatedTablet::events(before, action)) {
-        char line[64];
-        std::snprintf(line, sizeof line, "E: 0.%06d %04x %04x %d\n", 200000 + 20000 * i, event.type,
-                      event.code, event.value);
-        events += line;
-      }
-      before = action;
-    }
-    events_ = folder_.write("events", events).string();
-  }
-
-  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
-
-  CommandRun limn(const std::string& words) const {
-    return run_shell("export ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0; " +
-                     std::string(kUmockdev) + " -d " + device_ + " -i " + SimulatedTablet::kHidraw +
-                     "=" + hidraw_ + " -i " + SimulatedTablet::kEvent + "=" + event_ + " -e " +
-                     SimulatedTablet::kEvent + "=" + events_ + " -- \"$0\" " + words);
-  }
-
-  static constexpr int kSteps = 10;
-
- private:
-  TempFolder folder_;
-  std::string device_;
-  std::string hidraw_;
-  std::string event_;
-  std::string events_;
 };
 
 TEST_F(LiveDevices, DevicesListsBothSidesOfATablet) {

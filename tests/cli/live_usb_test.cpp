@@ -11,6 +11,7 @@
 #include "tests/cli/sample_traces.hpp"
 #include "tests/cli/simulated_usb.hpp"
 #include "tests/support/recordings.hpp"
+#include "tests/support/umockdev_text.hpp"
 
 namespace limn::test {
 namespace {
@@ -19,17 +20,6 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 using Bytes = SimulatedUsb::Bytes;
-
-/// The report descriptor of small_pen_header().
-Bytes small_pen_descriptor() {
-  std::istringstream words(small_pen_header().substr(6));
-  Bytes bytes;
-  unsigned byte = 0;
-  for (words >> std::hex; bytes.size() < 59 && words >> byte;) {
-    bytes.push_back(static_cast<std::uint8_t>(byte));
-  }
-  return bytes;
-}
 
 Bytes small_pen_report(int x) { return {1, 3, static_cast<std::uint8_t>(x), 0, 100, 0}; }
 
@@ -52,7 +42,7 @@ class LiveUsb : public testing::Test {
  protected:
   void SetUp() override {
     if (LIMN_HAS_LIBUSB == 0) GTEST_SKIP() << "this build has no libusb";
-    if (!SimulatedUsb::is_possible()) GTEST_SKIP() << "umockdev is not installed";
+    if (!has_umockdev()) GTEST_SKIP() << "umockdev is not installed";
   }
 };
 
@@ -292,26 +282,12 @@ TEST_F(LiveUsb, KyeIsSetByAFeatureReportAndUgeeByWritingToIt) {
 /// What umockdev-run needs for /dev/hidraw0; `script` is what its node sends and takes.
 std::string hidraw_options(const SimulatedUsb& tablet, const TempFolder& folder,
                            const std::string& script, const std::string& more_ioctls = {}) {
-  const auto number = [](std::uint16_t value) {
-    const char bytes[] = {static_cast<char>(value & 0xFF), static_cast<char>(value >> 8)};
-    return digits_of(std::string_view(bytes, 2));
-  };
-  const auto padded = [](std::string digits, std::size_t bytes) {
-    digits.resize(2 * bytes, '0');
-    return digits;
-  };
-  const std::string size = "3B000000";  // 59, little-endian
+  const HidrawNode node{.vendor = tablet.vendor,
+                        .product = tablet.product,
+                        .report_descriptor = tablet.report_descriptor,
+                        .name = "Limn Small Pen"};
   const std::string ioctls =
-      folder
-          .write("hidraw.ioctl",
-                 "@DEV /dev/hidraw0\nHIDIOCGRAWINFO 0 03000000" + number(tablet.vendor) +
-                     number(tablet.product) + "\nHIDIOCGRDESCSIZE 0 " + size + "\nHIDIOCGRDESC 0 " +
-                     size + padded(digits_of(tablet.report_descriptor), 4096) +
-                     "\nHIDIOCGRAWNAME 14 " +
-                     padded(digits_of(std::string_view("Limn Small Pen")), 256) +
-                     "\nHIDIOCGRAWPHYS 13 " +
-                     padded(digits_of(std::string_view("usb-1/input0")), 256) + "\n" + more_ioctls)
-          .string();
+      folder.write("hidraw.ioctl", hidraw_ioctls(node) + more_ioctls).string();
   return "-i /dev/hidraw0=" + ioctls +
          " -s /dev/hidraw0=" + folder.write("hidraw.script", script).string();
 }

@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kUmockdev = "/usr/bin/umockdev-run";
+
 CommandRun run(std::vector<std::string> words, std::string_view input) {
   // Files rather than pipes: no deadlock, whatever the sizes.
   const TempFolder streams;
@@ -60,6 +62,14 @@ CommandRun run_limn(const std::vector<std::string>& arguments, std::string_view 
 
 CommandRun run_shell(const std::string& script) {
   return run({"/bin/sh", "-c", script, LIMN_BINARY}, {});
+}
+
+bool has_umockdev() { return fs::exists(kUmockdev); }
+
+CommandRun run_umockdev(const std::string& words) {
+  // AddressSanitizer wants to be the first library; umockdev's comes before it, harmlessly.
+  return run_shell("export ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0; timeout 60 " +
+                   std::string(kUmockdev) + " " + words);
 }
 
 std::vector<std::string> names_in(const TempFolder& folder) {

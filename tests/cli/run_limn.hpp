@@ -21,6 +21,12 @@ CommandRun run_limn(const std::vector<std::string>& arguments, std::string_view 
 /// Runs a shell script with the path of the built `limn` as "$0".
 CommandRun run_shell(const std::string& script);
 
+/// Whether umockdev, which simulates devices below the C library, is installed.
+bool has_umockdev();
+
+/// Runs umockdev-run with these words, of the shell, in which "$0" is the built `limn`.
+CommandRun run_umockdev(const std::string& words);
+
 /// Names of all that a folder holds, sorted.
 std::vector<std::string> names_in(const TempFolder& folder);
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <sstream>
 #include <string>
+#include <vector>
 
 namespace limn::test {
 
@@ -11,6 +14,17 @@ inline std::string small_pen_header() {
   return "R: 59 05 0d 09 02 a1 01 85 01 09 20 a1 00 09 42 09 32 15 00 25 01 75 01 95 02 81 02 95 "
          "06 81 03 05 01 15 00 26 e8 03 35 00 45 64 55 0f 65 11 75 10 95 01 09 30 81 02 09 31 81 "
          "02 c0 c0\nN: Small Pen\nI: 3 1209 0001\n";
+}
+
+/// Its report descriptor.
+inline std::vector<std::uint8_t> small_pen_descriptor() {
+  std::istringstream words(small_pen_header().substr(6));  // behind "R: 59 "
+  std::vector<std::uint8_t> bytes;
+  unsigned byte = 0;
+  for (words >> std::hex; bytes.size() < 59 && words >> byte;) {
+    bytes.push_back(static_cast<std::uint8_t>(byte));
+  }
+  return bytes;
 }
 
 /// The same pen draws a line of 10 mm to the right in eleven samples, 5 ms apart, and leaves.

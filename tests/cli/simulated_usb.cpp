@@ -4,11 +4,11 @@
 #include <filesystem>
 
 #include "tests/support/recordings.hpp"
+#include "tests/support/umockdev_text.hpp"
 
 namespace limn::test {
 namespace {
 
-constexpr const char* kUmockdev = "/usr/bin/umockdev-run";
 constexpr int kNoSimulation = 99;       // an exit status of ours
 constexpr std::uint8_t kInterrupt = 1;  // as usbmon numbers types of transfers
 constexpr std::uint8_t kControl = 2;
@@ -58,21 +58,6 @@ std::string packet(std::uint64_t request, char event, std::uint8_t type, std::ui
 }
 
 }  // namespace
-
-std::string digits_of(std::string_view bytes) {
-  std::string digits;
-  for (const char c : bytes) {
-    digits += "0123456789ABCDEF"[static_cast<unsigned char>(c) >> 4];
-    digits += "0123456789ABCDEF"[static_cast<unsigned char>(c) & 15];
-  }
-  return digits;
-}
-
-std::string digits_of(const SimulatedUsb::Bytes& bytes) {
-  return digits_of(std::string(bytes.begin(), bytes.end()));
-}
-
-bool SimulatedUsb::is_possible() { return std::filesystem::exists(kUmockdev); }
 
 /// A transfer: what is submitted, and how it completes.
 void SimulatedUsb::exchange(std::uint8_t type, std::uint8_t endpoint, const Bytes& setup,
@@ -194,12 +179,9 @@ CommandRun SimulatedUsb::run(const std::string& program, const std::string& word
                                std::to_string(kNoSimulation) + "\n" + before + "\nexec \"$@\" 2>" +
                                err + "\n")
           .string();
-  // AddressSanitizer wants to be the first library; umockdev's comes before it, harmlessly.
   CommandRun done =
-      run_shell("export ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0; timeout 60 " +
-                std::string(kUmockdev) + " -d " + device + " -p " +
-                "/sys/devices/pci0000:00/0000:00:14.0/usb1/1-1=" + capture + " " + options +
-                " -- sh " + script + " " + program + " " + words);
+      run_umockdev("-d " + device + " -p /sys/devices/pci0000:00/0000:00:14.0/usb1/1-1=" + capture +
+                   " " + options + " -- sh " + script + " " + program + " " + words);
   if (done.exit_code != kNoSimulation) done.err = read_file(err);
   return done;
 }

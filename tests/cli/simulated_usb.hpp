@@ -58,8 +58,6 @@ class SimulatedUsb {
   /// A path in a folder of its own.
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
 
-  static bool is_possible();  ///< umockdev is installed
-
   /// Where its node lies while it runs, for `before`.
   static constexpr const char* kNode = "\"$UMOCKDEV_DIR\"/dev/bus/usb/001/002";
 
@@ -73,9 +71,5 @@ class SimulatedUsb {
   std::string device_text() const;
   Bytes descriptors() const;
 };
-
-/// `bytes` as hexadecimal digits.
-std::string digits_of(std::string_view bytes);
-std::string digits_of(const SimulatedUsb::Bytes& bytes);
 
 }  // namespace limn::test

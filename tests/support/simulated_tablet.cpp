@@ -7,31 +7,18 @@
 #include <cstring>
 #include <span>
 
+#include "tests/support/umockdev_text.hpp"
+
 namespace limn::test {
 namespace {
 
 constexpr char kName[] = "Simulated Tablet";
 constexpr char kPhys[] = "usb-1/input0";
 
-std::string hex(std::span<const std::uint8_t> bytes) {
-  std::string digits;
-  for (const std::uint8_t byte : bytes) {
-    digits += "0123456789ABCDEF"[byte >> 4];
-    digits += "0123456789ABCDEF"[byte & 15];
-  }
-  return digits;
-}
-
-std::string hex(std::string_view text, std::size_t size) {
-  std::vector<std::uint8_t> bytes(text.begin(), text.end());
-  bytes.resize(size);
-  return hex(bytes);
-}
-
 /// A line of an ioctl file: "EVIOCGBIT(3) 8 0300..".
 std::string answer(const std::string& request, std::size_t result,
                    std::span<const std::uint8_t> bytes) {
-  return request + ' ' + std::to_string(result) + ' ' + hex(bytes) + '\n';
+  return request + ' ' + std::to_string(result) + ' ' + digits_of(bytes) + '\n';
 }
 
 template <class T>
@@ -85,7 +72,7 @@ std::string SimulatedTablet::usb_and_hid_devices() {
          "\nE: HID_PHYS=" + kPhys +
          "\nE: HID_UNIQ=\nE: SUBSYSTEM=hid\nL: driver=../../../../../bus/hid/drivers/hid-generic\n"
          "H: report_descriptor=" +
-         hex(report_descriptor()) + "\n\nP: " + usb_path() +
+         digits_of(report_descriptor()) + "\n\nP: " + usb_path() +
          "/1-1:1.0\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber=00\\n\n"
          "A: ep_81/interval=5ms\\n\n\nP: " +
          usb_path() +
@@ -118,14 +105,12 @@ std::string SimulatedTablet::event_device() {
 }
 
 std::string SimulatedTablet::hidraw_ioctls(int number) {
-  const auto descriptor = report_descriptor();
-  const auto size = bytes_of(static_cast<std::uint32_t>(descriptor.size()));
-  auto padded = descriptor;
-  padded.resize(4096);
-  return "@DEV /dev/hidraw" + std::to_string(number) + "\nHIDIOCGRAWINFO 0 0300000009120200\n" +
-         "HIDIOCGRDESCSIZE 0 " + hex(size) + "\nHIDIOCGRDESC 0 " + hex(size) + hex(padded) +
-         "\nHIDIOCGRAWNAME " + std::to_string(sizeof kName) + " " + hex(kName, 256) +
-         "\nHIDIOCGRAWPHYS " + std::to_string(sizeof kPhys) + " " + hex(kPhys, 256) + "\n";
+  return limn::test::hidraw_ioctls({.path = "/dev/hidraw" + std::to_string(number),
+                                    .vendor = 0x1209,
+                                    .product = 2,
+                                    .report_descriptor = report_descriptor(),
+                                    .name = kName,
+                                    .phys = kPhys});
 }
 
 std::string SimulatedTablet::event_ioctls(const PenAction& state) {
@@ -140,9 +125,11 @@ std::string SimulatedTablet::event_ioctls(const PenAction& state) {
   std::string text = std::string("@DEV ") + kEvent + "\n";
   text += answer("EVIOCGVERSION", 0, bytes_of(std::uint32_t{0x010001}));
   text += answer("EVIOCGID", 0, bytes_of(input_id{BUS_USB, 0x1209, 2, 0x100}));
-  text += "EVIOCGNAME(0) " + std::to_string(sizeof kName) + " " + hex(kName, kTextBytes) + "\n";
-  text += "EVIOCGPHYS(0) " + std::to_string(sizeof kPhys) + " " + hex(kPhys, kTextBytes) + "\n";
-  text += "EVIOCGUNIQ(0) 1 " + hex("", kTextBytes) + "\n";
+  text +=
+      "EVIOCGNAME(0) " + std::to_string(sizeof kName) + " " + digits_of(kName, kTextBytes) + "\n";
+  text +=
+      "EVIOCGPHYS(0) " + std::to_string(sizeof kPhys) + " " + digits_of(kPhys, kTextBytes) + "\n";
+  text += "EVIOCGUNIQ(0) 1 " + digits_of("", kTextBytes) + "\n";
   text += answer("EVIOCGPROP(0)", kWord, bitmap(kWord, {}));
   text += answer("EVIOCGBIT(0)", kWord, bitmap(kWord, {EV_SYN, EV_KEY, EV_ABS, EV_MSC}));
   text += answer("EVIOCGBIT(1)", kKeyBytes, bitmap(kKeyBytes, keys));

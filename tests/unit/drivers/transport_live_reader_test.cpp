@@ -17,6 +17,7 @@
 #include "drivers/transport/paced_reader.hpp"
 #include "input/trace/hid_recorder_writer.hpp"
 #include "tests/support/alloc_guard.hpp"
+#include "tests/unit/drivers/counting_sink.hpp"
 
 namespace limn::test {
 namespace {
@@ -393,14 +394,6 @@ TEST(LiveReader, AllocatesNothingFromAReportToItsSample) {
   EXPECT_EQ(guard.count(), 0u) << "in the caller's thread";
   EXPECT_EQ(samples, 1000);
 }
-
-class CountingSink final : public TransportSink {
- public:
-  void report(Timestamp, std::span<const std::uint8_t>) noexcept override { ++reports; }
-  void frame(Timestamp, std::span<const EvdevEvent>) noexcept override {}
-  void lost(std::uint32_t, bool) noexcept override {}
-  int reports = 0;
-};
 
 TEST(OpenMessages, DrainingAllocatesNothing) {
   CountingSink sink;

@@ -31,6 +31,7 @@
 #include "tests/support/alloc_guard.hpp"
 #include "tests/support/simulated_tablet.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/unit/drivers/counting_sink.hpp"
 
 namespace limn::test {
 namespace {
@@ -63,15 +64,6 @@ class TextSink final : public TransportSink {
   std::vector<std::string> told;
   std::vector<std::vector<EvdevEvent>> kept;
   std::size_t longest = 0;
-};
-
-/// Counts frames and keeps nothing.
-class CountingSink final : public TransportSink {
- public:
-  void report(Timestamp, std::span<const std::uint8_t>) noexcept override {}
-  void frame(Timestamp, std::span<const EvdevEvent>) noexcept override { ++frames; }
-  void lost(std::uint32_t, bool) noexcept override {}
-  int frames = 0;
 };
 
 class SimulatedNodes : public testing::Test {
