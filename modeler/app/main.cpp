@@ -1,5 +1,7 @@
 // The command line: its words, nothing else. Each subcommand's work is a run_*() of command.hpp.
 
+#include <signal.h>  // SIGXFSZ is POSIX
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -258,6 +260,9 @@ int run(int argc, char** argv) {
 }  // namespace limn::app
 
 int main(int argc, char** argv) {
+  // A limit of file sizes is told as a full disk is: by write(2), not by a signal that would leave
+  // temporary files behind.
+  ::signal(SIGXFSZ, SIG_IGN);
   try {
     return limn::app::run(argc, argv);
   } catch (const std::exception& error) {

@@ -8,40 +8,16 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "modeler/app/io_error.hpp"
 #include "modeler/app/temporary_files.hpp"
 
 namespace limn::app {
 namespace {
 
 constexpr int kClosed = -1;
-
-tl::unexpected<Error> io_error(const std::string& action, int error, std::string remedy) {
-  return fail(ErrorCode::kIo, "",
-              "cannot " + action + ": " + std::generic_category().message(error),
-              std::move(remedy));
-}
-
-std::string remedy_for(int error) {
-  switch (error) {
-    case ENOENT:
-      return "create its folder first";
-    case EACCES:
-    case EPERM:
-    case EROFS:
-      return "choose a place that you may write to";
-    case ENOSPC:
-    case EDQUOT:
-      return "free some space or choose another disk";
-    case EISDIR:
-      return "name a file, not a folder";
-    default:
-      return "choose another place";
-  }
-}
 
 // The permissions that open(2) would give a new file; mkstemp gives 0600.
 mode_t default_mode() {
@@ -99,10 +75,10 @@ Expected<OutputFile> OutputFile::open(const std::string& path) {
 
   struct stat status {};
   const bool exists = ::stat(path.c_str(), &status) == 0;
-  if (exists && S_ISDIR(status.st_mode)) return io_error("write", EISDIR, remedy_for(EISDIR));
+  if (exists && S_ISDIR(status.st_mode)) return io_error("write", EISDIR);
   if (exists && !S_ISREG(status.st_mode)) {
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor < 0) return io_error("open for writing", errno, remedy_for(errno));
+    if (descriptor < 0) return io_error("open for writing", errno);
     return OutputFile(path, {}, descriptor);
   }
 
@@ -111,7 +87,7 @@ Expected<OutputFile> OutputFile::open(const std::string& path) {
   const std::filesystem::path target = followed(path);
   std::string pattern = target.string() + ".XXXXXX";
   const int descriptor = ::mkostemp(pattern.data(), O_CLOEXEC);
-  if (descriptor < 0) return io_error("create", errno, remedy_for(errno));
+  if (descriptor < 0) return io_error("create", errno);
   remove_on_signal(pattern);
   ::fchmod(descriptor, exists ? status.st_mode & 07777 : default_mode());
   return OutputFile(target.string(), std::move(pattern), descriptor);
@@ -121,7 +97,7 @@ Expected<void> OutputFile::write(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t n = ::write(descriptor_, bytes.data(), bytes.size());
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return io_error("write", errno, remedy_for(errno));
+    if (n < 0) return io_error("write", errno);
     bytes.remove_prefix(static_cast<std::size_t>(n));
   }
   return {};
@@ -133,9 +109,9 @@ Expected<void> OutputFile::finish() {
   if (!temporary_.empty() && ::fsync(descriptor) != 0) {
     const int error = errno;
     ::close(descriptor);
-    return io_error("write", error, remedy_for(error));
+    return io_error("write", error);
   }
-  if (::close(descriptor) != 0) return io_error("write", errno, remedy_for(errno));
+  if (::close(descriptor) != 0) return io_error("write", errno);
   return {};
 }
 
@@ -143,7 +119,7 @@ Expected<void> OutputFile::commit() {
   if (auto finished = finish(); !finished) return finished;
   if (temporary_.empty()) return {};
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) {
-    return io_error("rename into place", errno, remedy_for(errno));
+    return io_error("rename into place", errno);
   }
   keep_on_signal(temporary_);
   temporary_.clear();

@@ -4,20 +4,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
+#include "modeler/app/io_error.hpp"
+
 namespace limn::app {
-namespace {
-
-tl::unexpected<Error> io_error(const std::string& action, int error, const std::string& remedy) {
-  return fail(ErrorCode::kIo, "",
-              "cannot " + action + ": " + std::generic_category().message(error), remedy);
-}
-
-}  // namespace
-
 RecordingFile::RecordingFile(std::string path, int descriptor, bool regular) noexcept
     : path_(std::move(path)), descriptor_(descriptor), regular_(regular) {}
 
@@ -27,7 +20,8 @@ RecordingFile::RecordingFile(RecordingFile&& other) noexcept
       regular_(other.regular_),
       dirty_(other.dirty_),
       whole_(other.whole_),
-      gathered_(std::move(other.gathered_)) {}
+      gathered_(std::move(other.gathered_)),
+      record_ends_(std::move(other.record_ends_)) {}
 
 RecordingFile::~RecordingFile() {
   if (descriptor_ >= 0 && descriptor_ != STDOUT_FILENO) ::close(descriptor_);
@@ -43,40 +37,44 @@ Expected<RecordingFile> RecordingFile::create(const std::string& path) {
   if (errno == EEXIST) {
     return fail(ErrorCode::kIo, "", "exists already", "choose another name or remove it");
   }
-  return io_error("create", errno, "choose a place that you may write to");
+  return io_error("create", errno);
 }
 
-Expected<void> RecordingFile::write(std::string_view lines) {
+Expected<void> RecordingFile::write(std::string_view record) {
   constexpr std::size_t kPiece = 1 << 16;
-  gathered_ += lines;
+  gathered_ += record;
+  record_ends_.push_back(gathered_.size());
   dirty_ = true;
   return gathered_.size() < kPiece ? Expected<void>() : flush();
 }
 
 Expected<void> RecordingFile::flush() {
-  std::string_view left = gathered_;
-  while (!left.empty()) {
-    const ssize_t size = ::write(descriptor_, left.data(), left.size());
-    if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) {
-      const int error = size < 0 ? errno : ENOSPC;
-      const bool torn = regular_ && ::ftruncate(descriptor_, whole_) != 0;
-      std::string remedy = "free some space or choose another disk";
-      if (torn) remedy += "; the last line may be torn";
-      gathered_.clear();
-      return io_error("write", error, remedy);
+  std::size_t taken = 0;
+  int error = 0;
+  while (taken < gathered_.size() && error == 0) {
+    const ssize_t size = ::write(descriptor_, gathered_.data() + taken, gathered_.size() - taken);
+    if (size > 0) {
+      taken += static_cast<std::size_t>(size);
+    } else if (size == 0 || errno != EINTR) {
+      error = size < 0 ? errno : ENOSPC;
     }
-    left.remove_prefix(static_cast<std::size_t>(size));
   }
-  whole_ += static_cast<long long>(gathered_.size());
+  const auto torn = std::upper_bound(record_ends_.begin(), record_ends_.end(), taken);
+  if (torn != record_ends_.begin()) whole_ += static_cast<long long>(*std::prev(torn));
   gathered_.clear();
-  return {};
+  record_ends_.clear();
+  if (error == 0) return {};
+  auto failure = io_error("write", error);
+  if (regular_ && ::ftruncate(descriptor_, whole_) != 0) {
+    failure.value().remedy += "; the last line may be torn";
+  }
+  return failure;
 }
 
 Expected<void> RecordingFile::sync() {
   if (auto flushed = flush(); !flushed) return flushed;
   if (regular_ && ::fdatasync(descriptor_) != 0) {
-    return io_error("write", errno, "free some space or choose another disk");
+    return io_error("write", errno);
   }
   dirty_ = false;
   return {};

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "input/base/byte_stream.hpp"
 #include "input/base/error.hpp"
@@ -12,8 +12,8 @@ namespace limn::app {
 /// A recording in the making: it has its name from the start, and what was written is on the disk
 /// soon, so that a crash or a cut cable costs moments, not the recording.
 ///
-/// Bytes are gathered and written in pieces that end with a line end. A piece that the disk does
-/// not take whole is taken back, so the file always holds whole lines.
+/// Records, each some whole lines, are gathered and written in pieces. Of a piece that the disk
+/// does not take whole, its whole records stay, so the file always ends with one.
 class RecordingFile final : public ByteSink {
  public:
   /// Creates `path`; "-" is standard output. Error: kIo: it exists (a recording is never written
@@ -26,8 +26,8 @@ class RecordingFile final : public ByteSink {
   RecordingFile& operator=(const RecordingFile&) = delete;
   ~RecordingFile() override;
 
-  /// Gathers `lines`, whole lines. Writes where much is gathered. Error: kIo.
-  Expected<void> write(std::string_view lines) override;
+  /// Gathers a record. Writes where much is gathered. Error: kIo.
+  Expected<void> write(std::string_view record) override;
 
   /// Whether something waits for sync().
   bool dirty() const noexcept { return dirty_; }
@@ -43,8 +43,9 @@ class RecordingFile final : public ByteSink {
   int descriptor_ = -1;
   bool regular_ = false;
   bool dirty_ = false;
-  long long whole_ = 0;  // bytes of the file up to the last whole piece
+  long long whole_ = 0;  // bytes of the file up to the last whole record
   std::string gathered_;
+  std::vector<std::size_t> record_ends_;  // in gathered_
 };
 
 }  // namespace limn::app

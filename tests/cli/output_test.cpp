@@ -15,6 +15,7 @@ namespace limn::test {
 namespace {
 
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
@@ -41,6 +42,28 @@ TEST(Output, AFullDiskUnderStandardOutputIsAnError) {
   const CommandRun run = run_shell("\"$0\" simulate --list >/dev/full");
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, StartsWith("limn: standard output: cannot write: No space left"));
+}
+
+TEST(Output, ALimitOfFileSizesIsToldAsAFullDiskIs) {
+  const std::string told =
+      ": cannot write: File too large; raise the limit of file sizes (ulimit -f) or choose another "
+      "disk\n";
+  const TempFolder folder;
+  ASSERT_EQ(run_limn({"simulate", "pen", "-o", folder.path() / "trace"}).exit_code, 0);
+  const std::string limited = "cd '" + folder.path().string() + "' && ulimit -f 1 && \"$0\" ";
+  for (const std::string output : {"out.svg", "out.pdf", "out.png", "out.step", "out.json"}) {
+    const CommandRun run = run_shell(limited + "sketch trace -o " + output);
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_THAT(run.err, EndsWith("limn: " + output + told));
+    EXPECT_THAT(names_in(folder), ElementsAre("trace"));
+  }
+  const CommandRun simulated = run_shell(limited + "simulate pen -o out.hid");
+  EXPECT_EQ(simulated.exit_code, 1);
+  EXPECT_EQ(simulated.err, "limn: out.hid" + told);
+  const CommandRun decoded = run_shell(limited + "decode trace");
+  EXPECT_EQ(decoded.exit_code, 1);
+  EXPECT_EQ(decoded.err, "limn: standard output" + told);
+  EXPECT_THAT(names_in(folder), ElementsAre("trace"));
 }
 
 TEST(Output, ADeviceStaysADevice) {
