@@ -15,7 +15,8 @@ function(limn_set_flags target)
   endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC 12 sees overlaps in std::string's own code at -O2 and -O3 (GCC bug 105651).
-    target_compile_options(${target} PRIVATE -Wno-restrict)
+    # On 32-bit Arm it tells that GCC 7 passed some arguments otherwise.
+    target_compile_options(${target} PRIVATE -Wno-restrict -Wno-psabi)
   endif()
   if(LIMN_WERROR)
     target_compile_options(${target} PRIVATE -Werror)

@@ -24,7 +24,8 @@ class MonotonicClock final : public WaitingClock {
   void wait_until(Timestamp time) noexcept override {
     if (time <= now()) return;
     ::prctl(PR_SET_TIMERSLACK, 1UL);
-    const timespec until{time.count() / kSecond, time.count() % kSecond};
+    const timespec until{static_cast<time_t>(time.count() / kSecond),  // 32 bits on some
+                         static_cast<long>(time.count() % kSecond)};
     while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
     }
     ::prctl(PR_SET_TIMERSLACK, 0UL);  // back to the thread's default

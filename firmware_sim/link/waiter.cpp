@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ void set_alarm(const FileDescriptor& timer, SimulationClock::Point deadline) noe
   const std::int64_t time =
       std::chrono::duration_cast<std::chrono::nanoseconds>(deadline.time_since_epoch()).count();
   itimerspec alarm{};
-  alarm.it_value = {time / kSecond, time % kSecond};
+  alarm.it_value = {static_cast<std::time_t>(time / kSecond),  // 32 bits on some processors
+                    static_cast<long>(time % kSecond)};
   ::timerfd_settime(timer.get(), TFD_TIMER_ABSTIME, &alarm, nullptr);
 }
 

@@ -40,7 +40,7 @@ void for_each_packet(Bytes file, const PacketSink& sink) {
   if (number(file, 0, 4) == kPcap) {
     const auto link = static_cast<unsigned>(number(file, 20, 4));
     for (std::size_t at = 24; at + 16 <= file.size();) {
-      const std::size_t size = number(file, at + 8, 4);
+      const auto size = static_cast<std::size_t>(number(file, at + 8, 4));
       sink(link, part(file, at + 16, size));
       at += 16 + size;
     }
@@ -51,11 +51,11 @@ void for_each_packet(Bytes file, const PacketSink& sink) {
   constexpr std::uint32_t kEnhancedPacket = 6;
   unsigned link = 0;
   for (std::size_t at = 0; at + 12 <= file.size();) {
-    const std::size_t size = number(file, at + 4, 4);
+    const auto size = static_cast<std::size_t>(number(file, at + 4, 4));
     if (size < 12) return;
     if (number(file, at, 4) == kInterface) link = static_cast<unsigned>(number(file, at + 8, 2));
     if (number(file, at, 4) == kEnhancedPacket) {
-      sink(link, part(file, at + 28, number(file, at + 20, 4)));
+      sink(link, part(file, at + 28, static_cast<std::size_t>(number(file, at + 20, 4))));
     }
     at += size;
   }
@@ -96,7 +96,7 @@ Packet usbpcap(Bytes packet) {
   out.device = static_cast<unsigned>(number(packet, 19, 2));
   out.endpoint = static_cast<unsigned>(number(packet, 21, 1));
   out.control = number(packet, 22, 1) == kControlType;
-  const Bytes payload = part(packet, number(packet, 0, 2), packet.size());
+  const Bytes payload = part(packet, static_cast<std::size_t>(number(packet, 0, 2)), packet.size());
   if (out.control && number(packet, 27, 1) == kSetupStage) {
     out.setup = part(payload, 0, 8);
     out.data = part(payload, 8, payload.size());

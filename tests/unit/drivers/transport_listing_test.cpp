@@ -84,7 +84,9 @@ class FakeSystem {
     file(path + "/id/product", "0001\n");
     file(path + "/id/version", "0110\n");
     file(path + "/capabilities/abs", "1000003\n");
-    file(path + "/capabilities/key", "1c01 0 0 0 0 0\n");
+    // Words of the kernel's long, as this program would be shown them: BTN_TOOL_PEN is bit 320.
+    file(path + "/capabilities/key",
+         sizeof(long) == 8 ? "1c01 0 0 0 0 0\n" : "1c01 0 0 0 0 0 0 0 0 0 0\n");
     device(std::string(kInput) + "/event9", "input", "/class/input");
     file(path + "/event9/dev", "13:73\n");
   }
