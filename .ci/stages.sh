@@ -1,8 +1,18 @@
 # shellcheck shell=sh
-# Sourced by ./demo, ./check and .ci/install_packages.
+# Sourced by ./demo, ./check and the scripts of .ci.
 
 stage_pid=
 trap '[ -z "$stage_pid" ] || kill "$stage_pid" 2>/dev/null; exit 130' INT TERM
+
+# listed SECTION...: the packages of those sections of packages.txt, here.
+listed() {
+  for section in "$@"; do
+    awk -v wanted="[$section]" '
+      { sub(/[ \t]*#.*/, "") }
+      /^\[/ { inside = ($1 == wanted); next }
+      inside && NF { print $1 }' packages.txt
+  done
+}
 
 # stage TITLE LOG COMMAND...: runs a command with its output in LOG. Shows the log's last line in
 # place on a terminal, now and then elsewhere; shows the end of the log if the command fails, and

@@ -1,0 +1,181 @@
+#include "tests/kernel/device_paths.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include "drivers/devices/pen_initialization.hpp"
+#include "drivers/devices/trace_decoder.hpp"
+#include "drivers/transport/live_reader.hpp"
+#include "drivers/transport/open_device.hpp"
+#include "drivers/transport/paced_reader.hpp"
+#include "drivers/transport/pen_setup.hpp"
+#include "firmware_sim/link/in_memory.hpp"
+#include "input/trace/evemu_writer.hpp"
+#include "input/trace/hid_recorder_writer.hpp"
+#include "modeler/app/bus_control.hpp"
+
+namespace limn::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kPatience = 60s;
+
+/// Keeps events as they come.
+class Keeper {
+ public:
+  explicit Keeper(std::vector<ListedDevice> rows) : rows_(std::move(rows)) {}
+
+  void operator()(const DeviceDescribed& described) {
+    EXPECT_TRUE(described.device->axes.empty() ? reports_.describe(*described.device)
+                                               : frames_.describe(*described.device));
+  }
+  void operator()(const Report& report) {
+    const int interface =
+        rows_.empty() ? static_cast<int>(report.device) : rows_.at(report.device).interface_number;
+    taken_.reports[interface].emplace_back(report.bytes.begin(), report.bytes.end());
+    ++taken_.report_count;
+    EXPECT_TRUE(reports_.write(report));
+  }
+  void operator()(const EvdevFrame& frame) {
+    ++taken_.frames;
+    EXPECT_TRUE(frames_.write(frame));
+  }
+  void operator()(const TraceNote& note) {
+    taken_.notes.emplace_back(note.text);
+    if (taken_.frames == 0) {
+      EXPECT_TRUE(reports_.note(note.text, note.device));
+    }
+  }
+  template <class Other>
+  void operator()(const Other&) {}
+
+  const Taken& taken() const { return taken_; }
+  Taken finish() {
+    taken_.trace = sink_.text();
+    return std::move(taken_);
+  }
+
+ private:
+  std::vector<ListedDevice> rows_;
+  StringSink sink_;
+  HidRecorderWriter reports_{sink_};
+  EvemuWriter frames_{sink_};
+  Taken taken_;
+};
+
+/// UHID has a place where USB has an interface: "limn/input1".
+int interface_of(const ListedDevice& row) {
+  if (row.interface_number >= 0) return row.interface_number;
+  const std::string& path = row.device.physical_path;
+  const std::size_t digit = path.find_last_not_of("0123456789") + 1;
+  return digit < path.size() ? std::stoi(path.substr(digit)) : 0;
+}
+
+bool is_of(const ListedDevice& row, const firmware::DeviceSpec& spec, Cable cable) {
+  const std::string& folder = row.backend == Backend::kUsb ? row.usb_folder : row.hid_folder;
+  return row.device.vendor == spec.vendor && row.device.product == spec.product &&
+         folder.find(cable == Cable::kUhid ? "uhid" : "vhci") != std::string::npos;
+}
+
+}  // namespace
+
+std::vector<PenSample> samples_of(const std::string& trace) {
+  std::vector<PenSample> samples;
+  auto reader = open_trace(memory_bytes(trace), {});
+  EXPECT_TRUE(reader) << reader.error().what;
+  if (!reader) return samples;
+  TraceDecoder decoder(*std::move(reader), {.salvage = true});
+  for (;;) {
+    const auto sample = decoder.next();
+    EXPECT_TRUE(sample) << sample.error().what;
+    if (!sample || *sample == nullptr) return samples;
+    samples.push_back(**sample);
+  }
+}
+
+std::vector<ListedDevice> wait_for_rows(Backend backend, const firmware::DeviceSpec& spec,
+                                        Cable cable, std::size_t count) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  for (;;) {
+    auto rows = list_devices_of(backend).value_or(std::vector<ListedDevice>());
+    std::erase_if(rows, [&](const ListedDevice& row) {
+      return !is_of(row, spec, cable) || !row.readable;  // its node comes a moment after it
+    });
+    for (ListedDevice& row : rows) row.interface_number = interface_of(row);
+    std::sort(rows.begin(), rows.end(), [](const ListedDevice& a, const ListedDevice& b) {
+      return std::pair(a.interface_number, a.node) < std::pair(b.interface_number, b.node);
+    });
+    if (rows.size() >= count) return rows;
+    if (std::chrono::steady_clock::now() > end) {
+      ADD_FAILURE() << rows.size() << " of " << count << " nodes of " << spec.product_name << " on "
+                    << name(backend);
+      return rows;
+    }
+    std::this_thread::sleep_for(10ms);
+  }
+}
+
+Taken take(const std::vector<ListedDevice>& rows, std::size_t enough) {
+  std::vector<std::unique_ptr<Transport>> transports;
+  for (const ListedDevice& row : rows) {
+    auto opened = open_device(row);
+    EXPECT_TRUE(opened) << opened.error().at << ": " << opened.error().what;
+    if (!opened) return {};
+    EXPECT_FALSE(opened->trouble) << opened->trouble->what;
+    transports.push_back(std::move(opened->transport));
+  }
+  auto reader = LiveReader::start(std::move(transports));
+  EXPECT_TRUE(reader) << reader.error().what;
+  if (!reader) return {};
+  Keeper keeper(rows);
+  const Timestamp end = monotonic_clock().now() + kPatience;
+  while (keeper.taken().report_count + keeper.taken().frames < enough) {
+    auto event = (*reader)->next_until(end);
+    EXPECT_TRUE(event) << event.error().what;
+    if (!event || !*event || std::holds_alternative<TraceEnd>(**event)) break;
+    std::visit(keeper, **event);
+  }
+  return keeper.finish();
+}
+
+Taken expected_of(firmware::BusDevice& device, std::size_t enough, bool initialize) {
+  using firmware::HostEvent;
+  using firmware::InMemoryHost;
+  const firmware::DeviceSpec& spec = device.spec();
+  InMemoryHost host(device, InMemoryHost::Polling::kWhenDue);
+  Keeper keeper({});
+  while (keeper.taken().report_count < enough) {
+    const auto event = host.next(host.time() + kPatience);
+    if (!event || event->kind == HostEvent::Kind::kUnplugged) break;
+    if (event->kind == HostEvent::Kind::kReport) {
+      keeper(Report{event->interface, event->time, event->bytes});
+      continue;
+    }
+    for (std::size_t i = 0; i < spec.interfaces.size(); ++i) {
+      const auto interface = static_cast<std::uint8_t>(i);
+      TraceDevice described;
+      described.index = interface;
+      described.name = spec.product_name;
+      described.bus = static_cast<std::uint16_t>(spec.bus);
+      described.vendor = spec.vendor;
+      described.product = spec.product;
+      const auto descriptor = host.report_descriptor(interface);
+      described.report_descriptor.assign(descriptor.begin(), descriptor.end());
+      keeper(DeviceDescribed{&described});
+    }
+    const PenInitialization* const sequence = find_pen_initialization(spec.vendor, spec.product);
+    if (!initialize || sequence == nullptr) continue;
+    app::BusControl control(host, sequence->interface_number);
+    for (const std::string& note : set_up_pen(*sequence, control).notes) {
+      keeper(TraceNote{note, sequence->interface_number});
+    }
+  }
+  return keeper.finish();
+}
+
+}  // namespace limn::test

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "drivers/transport/device_listing.hpp"
+#include "firmware_sim/usb/bus_device.hpp"
+#include "input/sample/pen_sample.hpp"
+#include "tests/kernel/plugged_device.hpp"
+
+namespace limn::test {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// What came of one device by one path.
+struct Taken {
+  std::map<int, std::vector<Bytes>> reports;  ///< by interface, in the order of their coming
+  std::size_t report_count = 0;
+  std::size_t frames = 0;          ///< of an event node
+  std::vector<std::string> notes;  ///< "lost 3"
+  std::string trace;               ///< all of it, as `limn record` would have it
+};
+
+/// The samples of a recording, decoded as `limn decode` does.
+std::vector<PenSample> samples_of(const std::string& trace);
+
+/// The rows of `backend` that are of such a device on this cable, by interface; waits until Linux
+/// has `count`.
+std::vector<ListedDevice> wait_for_rows(Backend backend, const firmware::DeviceSpec& spec,
+                                        Cable cable, std::size_t count);
+
+/// Opens the rows and reads them until `enough` reports (frames, of an event node) have come or the
+/// device has gone, at most kPatience. As `limn record` does it, initialisation and all.
+Taken take(const std::vector<ListedDevice>& rows, std::size_t enough);
+
+/// What the device gives to a host without a kernel, up to `enough` reports; `initialize`: where
+/// limn sets such a device up, it is.
+Taken expected_of(firmware::BusDevice& device, std::size_t enough, bool initialize);
+
+}  // namespace limn::test
