@@ -23,6 +23,15 @@ using std::chrono::microseconds;
 
 constexpr const char* kPath = "/dev/uhid";
 
+/// UhidOptions::bus where nobody says. Sources: hid_is_usb() in drivers/hid/hid-uclogic-core.c and
+/// hid-lg.c, and the vendors of their tables.
+std::uint16_t bus_of(const DeviceSpec& spec) noexcept {
+  constexpr std::array<std::uint16_t, 4> kWantUsb = {0x046D, 0x256C, 0x28BD, 0x5543};
+  constexpr std::uint16_t kBluetooth = 5;
+  const bool wants = std::find(kWantUsb.begin(), kWantUsb.end(), spec.vendor) != kWantUsb.end();
+  return wants ? kBluetooth : static_cast<std::uint16_t>(spec.bus);
+}
+
 /// Writes the first `size` bytes of an event; Linux takes those that follow as zeros. Gives 0, or
 /// the system's error.
 int write_event(const FileDescriptor& file, const uhid_event& event, std::size_t size) {
@@ -160,7 +169,7 @@ LinkResult<void> UhidLink::create(std::uint8_t interface) {
   put_text(device.uniq, spec.serial_number);
   device.rd_size = static_cast<__u16>(descriptor.size());
   std::copy(descriptor.begin(), descriptor.end(), device.rd_data);
-  device.bus = options_.bus.value_or(static_cast<std::uint16_t>(spec.bus));
+  device.bus = options_.bus.value_or(bus_of(spec));
   device.vendor = spec.vendor;
   device.product = spec.product;
   device.version = spec.version;

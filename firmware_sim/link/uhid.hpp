@@ -18,8 +18,9 @@ struct uhid_event;  // of <linux/uhid.h>
 namespace limn::firmware {
 
 struct UhidOptions {
-  /// Linux's BUS_*; the device's own unless given. Drivers that insist on real USB (hid-uclogic,
-  /// hid-logitech) refuse 3, USB, and take 6, virtual.
+  /// Linux's BUS_*; the device's own unless given, but 5, Bluetooth, for vendors whose drivers in
+  /// Linux insist on real USB (hid-uclogic, hid-logitech): as USB devices they would be refused and
+  /// left to no driver; so hid-generic takes them. (On bus 6, virtual, hidapi would not list them.)
   std::optional<std::uint16_t> bus;
   /// The simulation's time stands still until a program opens the device, so that it misses
   /// nothing; else it runs from the first moment.

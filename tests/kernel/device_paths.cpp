@@ -23,7 +23,16 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kPatience = 60s;
+constexpr auto kPatience = 20s;
+constexpr auto kLookAgain = 100ms;  // looking is work for an emulated processor
+
+/// UHID has a place where USB has an interface: "limn/input1".
+int interface_of(const ListedDevice& row) {
+  if (row.interface_number >= 0) return row.interface_number;
+  const std::string& path = row.device.physical_path;
+  const std::size_t digit = path.find_last_not_of("0123456789") + 1;
+  return digit < path.size() ? std::stoi(path.substr(digit)) : 0;
+}
 
 /// Keeps events as they come.
 class Keeper {
@@ -36,7 +45,7 @@ class Keeper {
   }
   void operator()(const Report& report) {
     const int interface =
-        rows_.empty() ? static_cast<int>(report.device) : rows_.at(report.device).interface_number;
+        rows_.empty() ? static_cast<int>(report.device) : interface_of(rows_.at(report.device));
     taken_.reports[interface].emplace_back(report.bytes.begin(), report.bytes.end());
     ++taken_.report_count;
     EXPECT_TRUE(reports_.write(report));
@@ -68,18 +77,14 @@ class Keeper {
   Taken taken_;
 };
 
-/// UHID has a place where USB has an interface: "limn/input1".
-int interface_of(const ListedDevice& row) {
-  if (row.interface_number >= 0) return row.interface_number;
-  const std::string& path = row.device.physical_path;
-  const std::size_t digit = path.find_last_not_of("0123456789") + 1;
-  return digit < path.size() ? std::stoi(path.substr(digit)) : 0;
+bool hangs_on(const ListedDevice& row, Cable cable) {
+  const std::string& folder = row.backend == Backend::kUsb ? row.usb_folder : row.hid_folder;
+  return folder.find(cable == Cable::kUhid ? "/uhid/" : "/vhci_hcd") != std::string::npos;
 }
 
 bool is_of(const ListedDevice& row, const firmware::DeviceSpec& spec, Cable cable) {
-  const std::string& folder = row.backend == Backend::kUsb ? row.usb_folder : row.hid_folder;
   return row.device.vendor == spec.vendor && row.device.product == spec.product &&
-         folder.find(cable == Cable::kUhid ? "uhid" : "vhci") != std::string::npos;
+         hangs_on(row, cable);
 }
 
 }  // namespace
@@ -106,9 +111,8 @@ std::vector<ListedDevice> wait_for_rows(Backend backend, const firmware::DeviceS
     std::erase_if(rows, [&](const ListedDevice& row) {
       return !is_of(row, spec, cable) || !row.readable;  // its node comes a moment after it
     });
-    for (ListedDevice& row : rows) row.interface_number = interface_of(row);
     std::sort(rows.begin(), rows.end(), [](const ListedDevice& a, const ListedDevice& b) {
-      return std::pair(a.interface_number, a.node) < std::pair(b.interface_number, b.node);
+      return std::pair(interface_of(a), a.node) < std::pair(interface_of(b), b.node);
     });
     if (rows.size() >= count) return rows;
     if (std::chrono::steady_clock::now() > end) {
@@ -116,20 +120,46 @@ std::vector<ListedDevice> wait_for_rows(Backend backend, const firmware::DeviceS
                     << name(backend);
       return rows;
     }
-    std::this_thread::sleep_for(10ms);
+    std::this_thread::sleep_for(kLookAgain);
   }
 }
 
-Taken take(const std::vector<ListedDevice>& rows, std::size_t enough) {
+void wait_until_all_are_gone() {
+  for (const Backend backend : {Backend::kHidraw, Backend::kEvdev, Backend::kUsb}) {
+    const auto is_left = [](const ListedDevice& row) {
+      return hangs_on(row, Cable::kUhid) || hangs_on(row, Cable::kUsbip);
+    };
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    for (;;) {
+      const auto rows = list_devices_of(backend).value_or(std::vector<ListedDevice>());
+      if (std::none_of(rows.begin(), rows.end(), is_left)) break;
+      ASSERT_LT(std::chrono::steady_clock::now(), end) << "a device stays plugged in";
+      std::this_thread::sleep_for(kLookAgain);
+    }
+  }
+}
+
+Taking::Taking(std::vector<ListedDevice> rows, std::size_t enough) {
+  std::promise<void> open;
+  open_ = open.get_future();
+  taken_ = std::async(std::launch::async,
+                      [rows = std::move(rows), enough, open = std::move(open)]() mutable {
+                        return take(rows, enough, open);
+                      });
+}
+
+Taken Taking::take(const std::vector<ListedDevice>& rows, std::size_t enough,
+                   std::promise<void>& open) {
   std::vector<std::unique_ptr<Transport>> transports;
   for (const ListedDevice& row : rows) {
     auto opened = open_device(row);
     EXPECT_TRUE(opened) << opened.error().at << ": " << opened.error().what;
-    if (!opened) return {};
-    EXPECT_FALSE(opened->trouble) << opened->trouble->what;
+    if (!opened) continue;
+    EXPECT_FALSE(opened->trouble) << row.device.name << ": " << opened->trouble->what;
     transports.push_back(std::move(opened->transport));
   }
   auto reader = LiveReader::start(std::move(transports));
+  open.set_value();
   EXPECT_TRUE(reader) << reader.error().what;
   if (!reader) return {};
   Keeper keeper(rows);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <future>
 #include <map>
 #include <string>
 #include <vector>
@@ -32,9 +33,25 @@ std::vector<PenSample> samples_of(const std::string& trace);
 std::vector<ListedDevice> wait_for_rows(Backend backend, const firmware::DeviceSpec& spec,
                                         Cable cable, std::size_t count);
 
-/// Opens the rows and reads them until `enough` reports (frames, of an event node) have come or the
-/// device has gone, at most kPatience. As `limn record` does it, initialisation and all.
-Taken take(const std::vector<ListedDevice>& rows, std::size_t enough);
+/// Waits until Linux has no simulated device left.
+void wait_until_all_are_gone();
+
+/// Opens rows and reads them, in a thread of its own, until `enough` reports (frames, of an event
+/// node) have come or the devices have gone, at most 20 s. As `limn record` does it,
+/// initialisation and all. Fails the test where one cannot be opened.
+class Taking {
+ public:
+  Taking(std::vector<ListedDevice> rows, std::size_t enough);
+  void wait_until_open() { open_.wait(); }
+  Taken get() { return taken_.get(); }
+
+ private:
+  static Taken take(const std::vector<ListedDevice>& rows, std::size_t enough,
+                    std::promise<void>& open);
+
+  std::future<void> open_;
+  std::future<Taken> taken_;
+};
 
 /// What the device gives to a host without a kernel, up to `enough` reports; `initialize`: where
 /// limn sets such a device up, it is.

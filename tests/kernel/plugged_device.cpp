@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
+#include <fstream>
+#include <mutex>
+#include <optional>
+#include <sstream>
 #include <utility>
 
 #include "firmware_sim/link/uhid.hpp"
@@ -17,23 +21,36 @@ namespace {
 
 constexpr std::chrono::hours kForever{24};
 
+/// The first port for full speed that has no device, by vhci-hcd's table of "hs 0000 004 ..".
+std::optional<std::uint32_t> free_port() {
+  constexpr int kFree = 4;
+  std::ifstream table(std::string(firmware::kVhciFolder) + "/status");
+  for (std::string line; std::getline(table, line);) {
+    std::istringstream words(line);
+    std::string hub;
+    std::uint32_t port = 0;
+    int status = 0;
+    if (words >> hub >> port >> status && hub == "hs" && status == kFree) return port;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 const char* name(Cable cable) { return cable == Cable::kUhid ? "UHID" : "USB/IP"; }
 
 FileDescriptor plug_into_vhci() {
-  constexpr std::uint32_t kFullSpeedPorts = 8;
+  static std::mutex one_at_a_time;  // between looking at a port and having it
+  const std::lock_guard lock(one_at_a_time);
   int ends[2] = {-1, -1};
   EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
   FileDescriptor ours(ends[0]);
   const FileDescriptor theirs(ends[1]);
-  std::string why;
-  for (std::uint32_t port = 0; port < kFullSpeedPorts; ++port) {
-    const auto attached = firmware::attach_to_vhci(theirs.get(), port);
-    if (attached) return ours;
-    why = attached.error().what;
-  }
-  ADD_FAILURE() << why;
+  const auto port = free_port();
+  EXPECT_TRUE(port) << "all ports of vhci-hcd are in use";
+  if (!port) return ours;
+  const auto attached = firmware::attach_to_vhci(theirs.get(), *port);
+  EXPECT_TRUE(attached) << attached.error().what;
   return ours;
 }
 
