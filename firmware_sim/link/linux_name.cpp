@@ -8,8 +8,8 @@ std::string linux_name(const DeviceSpec& spec) {
   return name += spec.product_name;
 }
 
-std::string physical_path(std::uint8_t interface) {
-  return "limn/simulated/input" + std::to_string(interface);
+std::string physical_path(std::uint8_t interface, const std::string& link) {
+  return "limn/simulated" + link + "/input" + std::to_string(interface);
 }
 
 }  // namespace limn::firmware

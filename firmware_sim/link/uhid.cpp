@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -22,6 +23,12 @@ namespace {
 using std::chrono::microseconds;
 
 constexpr const char* kPath = "/dev/uhid";
+
+/// "/1234.0": unlike that of any other link of this machine's.
+std::string unused_place() {
+  static std::atomic<unsigned> links = 0;
+  return "/" + std::to_string(::getpid()) + "." + std::to_string(links++);
+}
 
 /// UhidOptions::bus where nobody says. Sources: hid_is_usb() in drivers/hid/hid-uclogic-core.c and
 /// hid-lg.c, and the vendors of their tables.
@@ -101,7 +108,8 @@ LinkResult<UhidLink> UhidLink::open(BusDevice& device, UhidOptions options, cons
 }
 
 UhidLink::UhidLink(BusDevice& device, UhidOptions options, std::vector<FileDescriptor> files)
-    : device_(&device),
+    : place_(unused_place()),
+      device_(&device),
       options_(options),
       files_(std::move(files)),
       host_(std::make_unique<InMemoryHost>(device, InMemoryHost::Polling::kWhenDue)) {}
@@ -165,7 +173,7 @@ LinkResult<void> UhidLink::create(std::uint8_t interface) {
   event.type = UHID_CREATE2;
   auto& device = event.u.create2;
   put_text(device.name, linux_name(spec));
-  put_text(device.phys, physical_path(interface));
+  put_text(device.phys, physical_path(interface, place_));
   put_text(device.uniq, spec.serial_number);
   device.rd_size = static_cast<__u16>(descriptor.size());
   std::copy(descriptor.begin(), descriptor.end(), device.rd_data);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "firmware_sim/link/file_descriptor.hpp"
@@ -73,6 +74,7 @@ class UhidLink {
   LinkResult<void> answer_get(std::uint8_t interface, const uhid_event& event);
   LinkResult<void> answer_set(std::uint8_t interface, uhid_event& event);
 
+  std::string place_;  // in physical_path(): two devices alike are two, one that returns is itself
   BusDevice* device_;
   UhidOptions options_;
   std::vector<FileDescriptor> files_;  // one an interface

@@ -1,6 +1,7 @@
 #include "tests/kernel/device_paths.hpp"
 
 #include <gtest/gtest.h>
+#include <linux/input.h>
 
 #include <algorithm>
 #include <thread>
@@ -52,6 +53,9 @@ class Keeper {
   }
   void operator()(const EvdevFrame& frame) {
     ++taken_.frames;
+    for (const EvdevEvent& event : frame.events) {
+      if (event.type == EV_ABS) taken_.axes[event.code].push_back(event.value);
+    }
     EXPECT_TRUE(frames_.write(frame));
   }
   void operator()(const TraceNote& note) {

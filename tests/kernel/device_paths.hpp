@@ -20,9 +20,10 @@ using Bytes = std::vector<std::uint8_t>;
 struct Taken {
   std::map<int, std::vector<Bytes>> reports;  ///< by interface, in the order of their coming
   std::size_t report_count = 0;
-  std::size_t frames = 0;          ///< of an event node
-  std::vector<std::string> notes;  ///< "lost 3"
-  std::string trace;               ///< all of it, as `limn record` would have it
+  std::size_t frames = 0;                ///< of an event node
+  std::map<int, std::vector<int>> axes;  ///< of an event node: each absolute axis, by code
+  std::vector<std::string> notes;        ///< "lost 3"
+  std::string trace;                     ///< all of it, as `limn record` would have it
 };
 
 /// The samples of a recording, decoded as `limn decode` does.

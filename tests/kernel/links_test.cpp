@@ -8,12 +8,15 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <numbers>
 #include <sstream>
 #include <string_view>
+#include <thread>
 
 #include "drivers/hid/descriptor_parser.hpp"
 #include "firmware_sim/devices/catalogue.hpp"
+#include "firmware_sim/link/usbip_server.hpp"
 #include "tests/kernel/device_paths.hpp"
 #include "tests/kernel/plugged_device.hpp"
 #include "tests/kernel/started_device.hpp"
@@ -266,6 +269,81 @@ TEST_F(KernelLinks, EveryDeviceIsReadOnHidrawOfUsbip) {
 }
 
 TEST_F(KernelLinks, EveryDeviceIsReadByLibusb) { expect_all_others(Cable::kUsbip, Backend::kUsb); }
+
+/// The values of axis `axis` (0 to 5) in the reports of the SpaceMouse: number 1, all six as le16.
+std::vector<int> axis_values(const Taken& expected, int axis) {
+  std::vector<int> values;
+  const auto at = static_cast<std::size_t>(1 + 2 * axis);
+  for (const Bytes& report : expected.reports.at(0)) {
+    if (report.at(0) != 1) continue;
+    values.push_back(static_cast<std::int16_t>(report.at(at) | report.at(at + 1) << 8));
+  }
+  return values;
+}
+
+/// What an axis at rest tells in the course of these values.
+std::vector<int> changes(const std::vector<int>& values) {
+  std::vector<int> changes;
+  int last = 0;
+  for (const int value : values) {
+    if (value != last) changes.push_back(value);
+    last = value;
+  }
+  return changes;
+}
+
+/// The event nodes that limn reads, those with absolute axes: a pen's and a 3D mouse's. (The
+/// SpaceNavigator calls its axes relative.)
+void expect_event_nodes(Cable cable) {
+  constexpr std::size_t kChanges = 150;  // of a push's 206 reports
+  Held pen("pen", "signature");
+  Held mouse("spacemouse", "push");
+  const PluggedDevice plugged_pen(pen.device, cable, false);
+  const PluggedDevice plugged_mouse(mouse.device, cable, false);
+  Taking of_pen(wait_for_rows(Backend::kEvdev, pen.device.spec(), cable, 1), kShort);
+  Taking of_mouse(wait_for_rows(Backend::kEvdev, mouse.device.spec(), cable, 1), kChanges);
+  of_pen.wait_until_open();
+  of_mouse.wait_until_open();
+  pen.device.start();
+  mouse.device.start();
+  const Taken drawn = of_pen.get();
+  EXPECT_EQ(drawn.frames, kShort);
+  EXPECT_THAT(drawn.notes, IsEmpty());
+  expect_changes(drawn, expected_from("pen", "signature", kShort + 100, false), kShort - 10);
+  const Taken moved = of_mouse.get();
+  EXPECT_EQ(moved.frames, kChanges);
+  EXPECT_EQ(moved.axes.size(), 6U);
+  const Taken expected = expected_from("spacemouse", "push", kShort, false);
+  for (const auto& [axis, values] : moved.axes) {
+    SCOPED_TRACE("axis " + std::to_string(axis));
+    auto all = changes(axis_values(expected, axis));
+    const auto got = changes(values);
+    ASSERT_GE(all.size(), got.size());
+    all.resize(got.size());
+    EXPECT_EQ(got, all);
+  }
+}
+
+TEST_F(KernelLinks, EventNodesOfUhidTellTheSame) { expect_event_nodes(Cable::kUhid); }
+
+TEST_F(KernelLinks, EventNodesOfUsbipTellTheSame) { expect_event_nodes(Cable::kUsbip); }
+
+TEST_F(KernelLinks, LinuxsOwnUsbipPlugsADeviceInOverTcp) {
+  Held pen("pen", "signature");
+  firmware::UsbipServer server(pen.device, {.wait_for_reader = false});
+  const auto port = server.listen(firmware::usbip::kDefaultPort);
+  ASSERT_TRUE(port) << port.error().what;
+  auto waiter = firmware::Waiter::make();
+  ASSERT_TRUE(waiter);
+  std::thread serving([&] { EXPECT_TRUE(server.run(std::chrono::hours(1), *waiter)); });
+  EXPECT_EQ(std::system("usbip attach -r 127.0.0.1 -b 1-1"), 0);
+  Taking taking(wait_for_rows(Backend::kHidraw, pen.device.spec(), Cable::kUsbip, 1), kShort);
+  taking.wait_until_open();
+  pen.device.start();
+  expect_reports(taking.get(), expected_from("pen", "signature", kShort, false), kShort);
+  waiter->stop();
+  serving.join();
+}
 
 }  // namespace
 }  // namespace limn::test
