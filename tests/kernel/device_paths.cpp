@@ -15,6 +15,7 @@
 #include "drivers/transport/paced_reader.hpp"
 #include "drivers/transport/pen_setup.hpp"
 #include "firmware_sim/link/in_memory.hpp"
+#include "firmware_sim/link/standard_requests.hpp"
 #include "input/trace/evemu_writer.hpp"
 #include "input/trace/hid_recorder_writer.hpp"
 #include "modeler/app/bus_control.hpp"
@@ -177,11 +178,15 @@ Taken Taking::take(const std::vector<ListedDevice>& rows, std::size_t enough,
   return keeper.finish();
 }
 
-Taken expected_of(firmware::BusDevice& device, std::size_t enough, bool initialize) {
+Taken expected_of(firmware::BusDevice& device, std::size_t enough, Setup setup) {
   using firmware::HostEvent;
   using firmware::InMemoryHost;
   const firmware::DeviceSpec& spec = device.spec();
-  InMemoryHost host(device, InMemoryHost::Polling::kWhenDue);
+  std::vector<firmware::HostRequest> requests;
+  if (setup == Setup::kWacom) {
+    requests.push_back({firmware::set_report(0, firmware::ReportKind::kFeature, 2, 2), {2, 2}});
+  }
+  InMemoryHost host(device, InMemoryHost::Polling::kWhenDue, requests);
   Keeper keeper({});
   while (keeper.taken().report_count < enough) {
     const auto event = host.next(host.time() + kPatience);
@@ -203,7 +208,7 @@ Taken expected_of(firmware::BusDevice& device, std::size_t enough, bool initiali
       keeper(DeviceDescribed{&described});
     }
     const PenInitialization* const sequence = find_pen_initialization(spec.vendor, spec.product);
-    if (!initialize || sequence == nullptr) continue;
+    if (setup != Setup::kLimn || sequence == nullptr) continue;
     app::BusControl control(host, sequence->interface_number);
     for (const std::string& note : set_up_pen(*sequence, control).notes) {
       keeper(TraceNote{note, sequence->interface_number});

@@ -54,8 +54,14 @@ class Taking {
   std::future<Taken> taken_;
 };
 
-/// What the device gives to a host without a kernel, up to `enough` reports; `initialize`: where
-/// limn sets such a device up, it is.
-Taken expected_of(firmware::BusDevice& device, std::size_t enough, bool initialize);
+/// Who has told a device what it needs before it reports in full.
+enum class Setup {
+  kNone,
+  kLimn,   ///< limn, by its tables (drivers/devices/pen_initialization.hpp)
+  kWacom,  ///< Linux's wacom: feature report 2, mode 2
+};
+
+/// What the device gives to a host without a kernel, up to `enough` reports.
+Taken expected_of(firmware::BusDevice& device, std::size_t enough, Setup setup);
 
 }  // namespace limn::test

@@ -6,10 +6,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <numbers>
 #include <sstream>
 #include <string_view>
 #include <thread>
@@ -18,35 +16,16 @@
 #include "firmware_sim/devices/catalogue.hpp"
 #include "firmware_sim/link/usbip_server.hpp"
 #include "tests/kernel/device_paths.hpp"
+#include "tests/kernel/expectations.hpp"
 #include "tests/kernel/plugged_device.hpp"
-#include "tests/kernel/started_device.hpp"
 
 namespace limn::test {
 namespace {
 
 using testing::IsEmpty;
 
-constexpr std::uint64_t kSeed = 7;
 constexpr std::size_t kLong = 5000;
 constexpr std::size_t kShort = 200;
-
-/// A simulated device, its hand's start held back.
-struct Held {
-  Held(std::string_view device_name, std::string_view movement)
-      : name(device_name),
-        made(firmware::make_simulated_device(device_name, movement, kSeed)),
-        device(made->bus()) {}
-
-  std::string name;
-  std::unique_ptr<firmware::SimulatedDevice> made;
-  StartedDevice device;
-};
-
-Taken expected_from(std::string_view name, std::string_view movement, std::size_t enough,
-                    bool initialize) {
-  const auto made = firmware::make_simulated_device(name, movement, kSeed);
-  return expected_of(made->bus(), enough, initialize);
-}
 
 void expect_reports(const Taken& taken, const Taken& expected, std::size_t enough) {
   EXPECT_EQ(taken.report_count, enough);
@@ -60,39 +39,6 @@ void expect_reports(const Taken& taken, const Taken& expected, std::size_t enoug
     ADD_FAILURE() << "report " << differ - reports.begin() << " of " << reports.size()
                   << " of interface " << interface << " is " << testing::PrintToString(*differ)
                   << " for " << testing::PrintToString(*other);
-  }
-}
-
-/// Whether Linux's side of a pen tells the same of both.
-bool same_state(const PenSample& a, const PenSample& b, int counts) {
-  const double degree = std::numbers::pi / 180 * (counts + 0.01);
-  return a.state == b.state && a.buttons == b.buttons && std::abs(a.raw.x - b.raw.x) <= counts &&
-         std::abs(a.raw.y - b.raw.y) <= counts &&
-         std::abs(a.raw.pressure - b.raw.pressure) <= counts &&
-         std::abs(a.tilt_x_rad - b.tilt_x_rad) <= degree &&
-         std::abs(a.tilt_y_rad - b.tilt_y_rad) <= degree;
-}
-
-/// What is left where only changes are told, of a pen in range.
-std::vector<PenSample> changes_of(const std::vector<PenSample>& samples) {
-  std::vector<PenSample> changes;
-  for (const PenSample& sample : samples) {
-    if (sample.state == PenState::kOutOfRange) continue;
-    if (changes.empty() || !same_state(changes.back(), sample, 0)) changes.push_back(sample);
-  }
-  return changes;
-}
-
-void expect_changes(const Taken& kernel, const Taken& expected, std::size_t at_least) {
-  const auto got = changes_of(samples_of(kernel.trace));
-  const auto all = changes_of(samples_of(expected.trace));
-  EXPECT_GE(got.size(), at_least);
-  ASSERT_LE(got.size(), all.size());
-  for (std::size_t i = 0; i < got.size(); ++i) {
-    ASSERT_TRUE(same_state(got[i], all[i], 1))
-        << "change " << i << ": " << got[i].raw.x << ", " << got[i].raw.y << ", "
-        << got[i].raw.pressure << " for " << all[i].raw.x << ", " << all[i].raw.y << ", "
-        << all[i].raw.pressure;
   }
 }
 
@@ -162,7 +108,7 @@ void expect_reports(const std::vector<Bytes>& reports, const Taken& expected, in
 }
 
 TEST_F(KernelLinks, NoReportOfAFastPenIsLostOnHidrawAndEvdev) {
-  const Taken expected = expected_from("fast-pen", "signature", kLong + 1000, false);
+  const Taken expected = expected_from("fast-pen", "signature", kLong + 1000, Setup::kNone);
   Held by_uhid("fast-pen", "signature");
   Held by_usbip("fast-pen", "signature");
   const PluggedDevice uhid(by_uhid.device, Cable::kUhid, false);
@@ -191,7 +137,7 @@ TEST_F(KernelLinks, NoReportOfAFastPenIsLostOnHidrawAndEvdev) {
 }
 
 TEST_F(KernelLinks, NoReportOfAFastPenIsLostByLibusb) {
-  const Taken expected = expected_from("fast-pen", "signature", kLong, false);
+  const Taken expected = expected_from("fast-pen", "signature", kLong, Setup::kNone);
   Held one("fast-pen", "signature");
   Held other("fast-pen", "signature");
   const PluggedDevice first(one.device, Cable::kUsbip, false);
@@ -252,9 +198,10 @@ void expect_all_others(Cable cable, Backend backend) {
   others.each([&](const Held& held) {
     SCOPED_TRACE(held.name);
     // UHID is no USB, of which strings and endpoints could be asked.
-    const bool initialize = cable == Cable::kUsbip;
-    Taken expected = expected_from(held.name, AllOthers::movement(held), kShort + 100, initialize);
-    if (initialize && backend == Backend::kHidraw) cut_as_linux_does(expected, held.made->bus());
+    const Setup setup = cable == Cable::kUsbip ? Setup::kLimn : Setup::kNone;
+    Taken expected = expected_from(held.name, AllOthers::movement(held), kShort + 100, setup);
+    if (setup == Setup::kLimn && backend == Backend::kHidraw)
+      cut_as_linux_does(expected, held.made->bus());
     const Taken got = taken[next++].get();
     expect_reports(got, expected, kShort);
   });
@@ -309,11 +256,11 @@ void expect_event_nodes(Cable cable) {
   const Taken drawn = of_pen.get();
   EXPECT_EQ(drawn.frames, kShort);
   EXPECT_THAT(drawn.notes, IsEmpty());
-  expect_changes(drawn, expected_from("pen", "signature", kShort + 100, false), kShort - 10);
+  expect_changes(drawn, expected_from("pen", "signature", kShort + 100, Setup::kNone), kShort - 10);
   const Taken moved = of_mouse.get();
   EXPECT_EQ(moved.frames, kChanges);
   EXPECT_EQ(moved.axes.size(), 6U);
-  const Taken expected = expected_from("spacemouse", "push", kShort, false);
+  const Taken expected = expected_from("spacemouse", "push", kShort, Setup::kNone);
   for (const auto& [axis, values] : moved.axes) {
     SCOPED_TRACE("axis " + std::to_string(axis));
     auto all = changes(axis_values(expected, axis));
@@ -340,7 +287,7 @@ TEST_F(KernelLinks, LinuxsOwnUsbipPlugsADeviceInOverTcp) {
   Taking taking(wait_for_rows(Backend::kHidraw, pen.device.spec(), Cable::kUsbip, 1), kShort);
   taking.wait_until_open();
   pen.device.start();
-  expect_reports(taking.get(), expected_from("pen", "signature", kShort, false), kShort);
+  expect_reports(taking.get(), expected_from("pen", "signature", kShort, Setup::kNone), kShort);
   waiter->stop();
   serving.join();
 }
