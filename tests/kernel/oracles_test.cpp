@@ -8,7 +8,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -93,6 +100,90 @@ TEST_F(KernelOracles, WacomDecodesTheIntuosAsLimnDoes) {
 
 TEST_F(KernelOracles, WacomDecodesTheBluetoothPenAsLimnDoes) {
   expect_decoded_alike("bluetooth-pen", Cable::kUhid, "wacom", Setup::kNone);
+}
+
+/// A program of the guest that runs while this lives.
+class Program {
+ public:
+  explicit Program(const std::string& command)
+      : output_(::popen(("exec " + command).c_str(), "r")) {}
+  ~Program() {
+    if (output_ != nullptr) ::pclose(output_);
+  }
+  Program(const Program&) = delete;
+
+  std::string line() {
+    std::array<char, 1024> text{};
+    return std::fgets(text.data(), text.size(), output_) != nullptr ? text.data() : "";
+  }
+
+ private:
+  std::FILE* output_;
+};
+
+/// A sample of libinput-debug-events: mm, degrees, 0 to 1, with two decimals.
+struct LibinputSample {
+  double x_mm = 0;
+  double y_mm = 0;
+  double tilt_x_deg = 0;
+  double tilt_y_deg = 0;
+  double pressure = 0;
+};
+
+std::optional<LibinputSample> read_libinput(std::string line) {
+  const std::size_t event = line.find("TABLET_TOOL_");
+  if (event == std::string::npos) return std::nullopt;
+  std::erase(line, '*');  // behind what has changed
+  const std::size_t axes = line.find("s\t", event);
+  LibinputSample sample;
+  const int read =
+      std::sscanf(line.c_str() + axes + 1, " %lf/%lf tilt: %lf/%lf pressure: %lf", &sample.x_mm,
+                  &sample.y_mm, &sample.tilt_x_deg, &sample.tilt_y_deg, &sample.pressure);
+  return read == 5 ? std::optional(sample) : std::nullopt;
+}
+
+TEST_F(KernelOracles, LibinputReadsThePenAsLimnDoes) {
+  std::filesystem::create_directories("/etc/libinput");
+  std::ofstream("/etc/libinput/local-overrides.quirks")
+      << "[as the device says]\nMatchUdevType=tablet\nAttrTabletSmoothing=0\n";
+  Held held("pen", "signature");
+  const PluggedDevice plugged(held.device, Cable::kUsbip, false);
+  const ListedDevice node = wait_for_pen_node(held, Cable::kUsbip, "hid-generic");
+  Program libinput("/usr/libexec/libinput/libinput-debug-events --device " + node.node);
+  ASSERT_NE(libinput.line().find("DEVICE_ADDED"), std::string::npos);
+  held.device.start();
+  std::vector<PenSample> expected =
+      samples_of(expected_from("pen", "signature", 2 * kFrames, Setup::kNone).trace);
+  std::erase_if(expected, [](const PenSample& s) { return s.state == PenState::kOutOfRange; });
+  std::size_t next = 0;
+  std::size_t compared = 0;
+  while (compared < kFrames) {
+    const std::string line = libinput.line();
+    const auto got = read_libinput(line);
+    ASSERT_TRUE(got) << line;
+    // Reports that change nothing are not told; what is told is one of the next few.
+    constexpr double kPosition = 0.0101;  // a count, and the last decimal
+    constexpr double kTilt = 0.02;
+    constexpr double kPressure = 0.0055;
+    constexpr double kFloor = 0.01;  // libinput's pressure begins at 1 % of the range
+    const auto alike = [&](const PenSample& s) {
+      constexpr double kDegree = std::numbers::pi / 180;
+      return std::abs(s.x_mm - got->x_mm) < kPosition && std::abs(s.y_mm - got->y_mm) < kPosition &&
+             std::abs(s.tilt_x_rad / kDegree - got->tilt_x_deg) < kTilt &&
+             std::abs(s.tilt_y_rad / kDegree - got->tilt_y_deg) < kTilt &&
+             std::abs(std::max(0.0, (s.pressure - kFloor) / (1 - kFloor)) - got->pressure) <
+                 kPressure;
+    };
+    const std::size_t last = std::min(next + 3, expected.size());
+    const auto found = std::find_if(expected.begin() + static_cast<std::ptrdiff_t>(next),
+                                    expected.begin() + static_cast<std::ptrdiff_t>(last), alike);
+    ASSERT_NE(found, expected.begin() + static_cast<std::ptrdiff_t>(last))
+        << line << "for " << expected[next].x_mm << "/" << expected[next].y_mm << " "
+        << expected[next].tilt_x_rad * 180 / std::numbers::pi << "/"
+        << expected[next].tilt_y_rad * 180 / std::numbers::pi << " " << expected[next].pressure;
+    next = static_cast<std::size_t>(found - expected.begin()) + 1;
+    ++compared;
+  }
 }
 
 }  // namespace
