@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -184,6 +185,69 @@ TEST_F(KernelOracles, LibinputReadsThePenAsLimnDoes) {
     next = static_cast<std::size_t>(found - expected.begin()) + 1;
     ++compared;
   }
+}
+
+/// Six axes of a 3D mouse at one time.
+using Deflections = std::array<int, 6>;
+
+/// What spacenavd makes of the SpaceMouse's reports: -350 to 350 is scaled to -500 to 500, what is
+/// hardly anything is nothing, and its frame is x, -z, -y of the device's.
+std::vector<Deflections> by_spacenavd(const Taken& reports) {
+  const auto scaled = [](int value) {
+    constexpr int kDeadZone = 2;
+    const int of_500 = (value + 350) * 1000 / 700 - 500;
+    return std::abs(of_500) < kDeadZone ? 0 : of_500;
+  };
+  std::vector<Deflections> all;
+  for (const Bytes& report : reports.reports.at(0)) {
+    if (report.at(0) != 1) continue;
+    Deflections raw{};
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      raw[i] = scaled(static_cast<std::int16_t>(report.at(1 + 2 * i) | report.at(2 + 2 * i) << 8));
+    }
+    all.push_back({raw[0], -raw[2], -raw[1], raw[3], -raw[5], -raw[4]});
+  }
+  return all;
+}
+
+/// What came by libspnav, whose every event has all six.
+std::vector<Deflections> by_libspnav(const Taken& taken) {
+  std::vector<Deflections> all(taken.frames);
+  for (const auto& [axis, values] : taken.axes) {
+    for (std::size_t i = 0; i < std::min(all.size(), values.size()); ++i) {
+      all[i].at(static_cast<std::size_t>(axis)) = values[i];
+    }
+  }
+  return all;
+}
+
+TEST_F(KernelOracles, SpacenavdReadsA3dMouseAsLimnDoes) {
+  ASSERT_EQ(std::system("cd / && spacenavd -d >/dev/null 2>&1 &"), 0);
+  Held held("spacemouse", "push");
+  const PluggedDevice plugged(held.device, Cable::kUsbip, false);
+  wait_for_rows(Backend::kHidraw, held.device.spec(), Cable::kUsbip, 1);
+  std::this_thread::sleep_for(2s);  // spacenavd is told by udev, too, and says nothing of it
+  const auto row = find_spacenavd();
+  ASSERT_TRUE(row);
+  constexpr std::size_t kMotions = 150;
+  Taking taking({*row}, kMotions);
+  taking.wait_until_open();
+  held.device.start();
+  auto got = by_libspnav(taking.get());
+  auto expected = by_spacenavd(expected_from("spacemouse", "push", 206, Setup::kNone));
+  for (auto* list : {&got, &expected}) {
+    list->insert(list->begin(), Deflections{});  // both begin at rest, and rests are told once
+    list->erase(std::unique(list->begin(), list->end()), list->end());
+  }
+  EXPECT_GT(got.size(), 100U);
+  ASSERT_LE(got.size(), expected.size());
+  expected.resize(got.size());
+  const auto [differ, other] = std::mismatch(got.begin(), got.end(), expected.begin());
+  if (differ != got.end()) {
+    ADD_FAILURE() << "motion " << differ - got.begin() << " is " << testing::PrintToString(*differ)
+                  << " for " << testing::PrintToString(*other);
+  }
+  EXPECT_EQ(std::system("killall spacenavd"), 0);
 }
 
 }  // namespace
