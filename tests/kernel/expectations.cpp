@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -43,6 +44,21 @@ Taken expected_from(std::string_view name, std::string_view movement, std::size_
                     Setup setup) {
   const auto made = firmware::make_simulated_device(name, movement, kSeed);
   return expected_of(made->bus(), enough, setup);
+}
+
+void expect_reports(const Taken& taken, const Taken& expected, std::size_t enough) {
+  EXPECT_EQ(taken.report_count, enough);
+  for (const auto& [interface, reports] : taken.reports) {
+    const auto found = expected.reports.find(interface);
+    ASSERT_NE(found, expected.reports.end()) << "interface " << interface << " is silent";
+    ASSERT_LE(reports.size(), found->second.size());
+    const auto [differ, other] =
+        std::mismatch(reports.begin(), reports.end(), found->second.begin());
+    if (differ == reports.end()) continue;
+    ADD_FAILURE() << "report " << differ - reports.begin() << " of " << reports.size()
+                  << " of interface " << interface << " is " << testing::PrintToString(*differ)
+                  << " for " << testing::PrintToString(*other);
+  }
 }
 
 void expect_changes(const Taken& kernel, const Taken& expected, std::size_t at_least) {

@@ -24,6 +24,10 @@ struct Held {
 Taken expected_from(std::string_view name, std::string_view movement, std::size_t enough,
                     Setup setup);
 
+/// Fails unless `enough` reports came, those of each interface the ones that the device gives
+/// first.
+void expect_reports(const Taken& taken, const Taken& expected, std::size_t enough);
+
 /// Fails unless what an event node told of a pen in range is what changes from one of `expected`'s
 /// samples to the next, each within one count (one degree of tilt), and at least `at_least` of it.
 void expect_changes(const Taken& kernel, const Taken& expected, std::size_t at_least);

@@ -27,21 +27,6 @@ using testing::IsEmpty;
 constexpr std::size_t kLong = 5000;
 constexpr std::size_t kShort = 200;
 
-void expect_reports(const Taken& taken, const Taken& expected, std::size_t enough) {
-  EXPECT_EQ(taken.report_count, enough);
-  for (const auto& [interface, reports] : taken.reports) {
-    const auto found = expected.reports.find(interface);
-    ASSERT_NE(found, expected.reports.end()) << "interface " << interface << " is silent";
-    ASSERT_LE(reports.size(), found->second.size());
-    const auto [differ, other] =
-        std::mismatch(reports.begin(), reports.end(), found->second.begin());
-    if (differ == reports.end()) continue;
-    ADD_FAILURE() << "report " << differ - reports.begin() << " of " << reports.size()
-                  << " of interface " << interface << " is " << testing::PrintToString(*differ)
-                  << " for " << testing::PrintToString(*other);
-  }
-}
-
 class KernelLinks : public testing::Test {
  protected:
   void TearDown() override { wait_until_all_are_gone(); }

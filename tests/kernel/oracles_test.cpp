@@ -21,9 +21,11 @@
 #include <string_view>
 #include <thread>
 
+#include "drivers/transport/open_device.hpp"
 #include "tests/kernel/device_paths.hpp"
 #include "tests/kernel/expectations.hpp"
 #include "tests/kernel/plugged_device.hpp"
+#include "tests/kernel/qmp.hpp"
 
 namespace limn::test {
 namespace {
@@ -72,13 +74,22 @@ void expect_decoded_alike(const char* name, Cable cable, const char* driver, Set
   const PluggedDevice plugged(held.device, cable, false);
   const ListedDevice node = wait_for_pen_node(held, cable, driver);
   switch_smoothing_off(node);
+  // hid-uclogic takes two of the XP-Pen's three interfaces.
+  const std::size_t nodes = std::min<std::size_t>(2, held.device.spec().interfaces.size());
+  Taking raw(wait_for_rows(Backend::kHidraw, held.device.spec(), cable, nodes), kFrames);
+  raw.wait_until_open();
   Taking kernel({node}, kFrames);
   kernel.wait_until_open();
   std::this_thread::sleep_for(1500ms);  // wacom sets the mode a second after it has the device
   held.device.start();
+  const Taken expected = expected_from(name, "signature", 2 * kFrames, setup);
+  // hid-uclogic turns the reports of some into what its own descriptor says.
+  const Taken reports = raw.get();
+  EXPECT_EQ(reports.report_count, kFrames);
+  expect_changes(reports, expected, kFrames - 20);
   const Taken frames = kernel.get();
   EXPECT_GE(frames.frames, kFrames);
-  expect_changes(frames, expected_from(name, "signature", 2 * kFrames, setup), kFrames - 20);
+  expect_changes(frames, expected, kFrames - 20);
 }
 
 TEST_F(KernelOracles, HidUclogicDecodesTheHuionsAsLimnDoes) {
@@ -248,6 +259,70 @@ TEST_F(KernelOracles, SpacenavdReadsA3dMouseAsLimnDoes) {
                   << " for " << testing::PrintToString(*other);
   }
   EXPECT_EQ(std::system("killall spacenavd"), 0);
+}
+
+/// The node of one of QEMU's own devices.
+ListedDevice wait_for_qemus(Backend backend, int vendor, int product) {
+  for (int tries = 0; tries < 100; ++tries) {
+    for (const ListedDevice& row : list_devices_of(backend).value_or(std::vector<ListedDevice>())) {
+      if (row.device.vendor == vendor && row.device.product == product && row.readable) return row;
+    }
+    std::this_thread::sleep_for(100ms);
+  }
+  ADD_FAILURE() << "QEMU has no such device";
+  return {};
+}
+
+constexpr int kPoints = 12;
+constexpr int x_of(int point) { return 1000 + 2000 * point; }
+constexpr int y_of(int point) { return 500 + 1000 * point; }
+constexpr bool down_at(int point) { return point > 3; }
+
+/// The device that QEMU calls `driver` and `pointer`, plugged in and moved along a line.
+Taken point_with(const char* driver, const char* pointer, Backend backend, int vendor,
+                 int product) {
+  static Qmp qemu;  // it negotiates once
+  qemu.ask("device_add", std::string(R"({"driver": ")") + driver + R"(", "id": "pointer"})");
+  const ListedDevice row = wait_for_qemus(backend, vendor, product);
+  if (backend == Backend::kEvdev) switch_smoothing_off(row);
+  Taking taking({row}, kPoints);
+  taking.wait_until_open();
+  std::this_thread::sleep_for(1500ms);  // wacom sets the mode a second after it has the device
+  qemu.choose_pointer(pointer);
+  for (int i = 0; i < kPoints; ++i) {
+    qemu.point(x_of(i), y_of(i), down_at(i));
+    std::this_thread::sleep_for(50ms);
+  }
+  Taken taken = taking.get();
+  qemu.ask("device_del", R"({"id": "pointer"})");
+  return taken;
+}
+
+TEST_F(KernelOracles, QemusTabletIsReadRight) {
+  const Taken taken = point_with("usb-tablet", "QEMU HID Tablet", Backend::kHidraw, 0x0627, 0x0001);
+  ASSERT_EQ(taken.report_count, static_cast<std::size_t>(kPoints));
+  for (int i = 0; i < kPoints; ++i) {
+    const Bytes& report = taken.reports.at(0).at(static_cast<std::size_t>(i));
+    ASSERT_EQ(report.size(), 6U);
+    EXPECT_EQ(report[0], down_at(i) ? 1 : 0);
+    EXPECT_EQ(report[1] | report[2] << 8, x_of(i));
+    EXPECT_EQ(report[3] | report[4] << 8, y_of(i));
+  }
+}
+
+TEST_F(KernelOracles, QemusWacomTabletIsReadRight) {
+  const Taken taken =
+      point_with("usb-wacom-tablet", "QEMU PenPartner tablet", Backend::kEvdev, 0x056A, 0x0000);
+  const auto samples = samples_of(taken.trace);
+  ASSERT_GE(samples.size(), static_cast<std::size_t>(kPoints));
+  for (int i = 0; i < kPoints; ++i) {
+    SCOPED_TRACE(i);
+    const PenSample& sample = samples[static_cast<std::size_t>(i)];
+    EXPECT_EQ(sample.raw.x, x_of(i) * 5040 / 0x7FFF);
+    EXPECT_EQ(sample.raw.y, y_of(i) * 3780 / 0x7FFF);
+    EXPECT_NEAR(sample.x_mm, x_of(i) / 32767.0 * 5040 / 40, 0.025) << "40 counts a mm";
+    EXPECT_EQ(sample.state, down_at(i) ? PenState::kInContact : PenState::kInRange);
+  }
 }
 
 }  // namespace
