@@ -184,6 +184,7 @@ PenDecoder::Decoded PenDecoder::decode(const Report& report) noexcept {
   }
   if (kind == ReportClass::kUnknownId) {
     kind = generic_.decode(report.bytes, report.time, *output_);
+    if (vendor_ && kind == ReportClass::kPen) vendor_->overtaken();
   }
   if (kind == ReportClass::kUnknownId) kind = class_in_descriptor(report.bytes);
   return {kind, output_->samples()};

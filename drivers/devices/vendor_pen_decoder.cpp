@@ -271,17 +271,17 @@ void VendorPenDecoder::set_tilt(PenSample& sample, std::int32_t x_degrees,
 
 ReportClass VendorPenDecoder::in_range(const PenSample& sample, PenOutput& out) noexcept {
   present_ = true;
-  tool_ = sample.tool;
   out.push(sample);
   return ReportClass::kPen;
 }
 
 ReportClass VendorPenDecoder::out_of_range(Timestamp time, PenOutput& out) noexcept {
-  if (!present_) return ReportClass::kPen;
+  present_ = false;
+  const PenSample& last = out.machine().last();  // another decoder's, perhaps
+  if (last.state == PenState::kOutOfRange) return ReportClass::kPen;
   PenSample gone;
   gone.time = time;
-  gone.tool = tool_;
-  present_ = false;
+  gone.tool = last.tool;
   out.push(gone);
   return ReportClass::kPen;
 }

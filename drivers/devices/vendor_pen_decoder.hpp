@@ -36,9 +36,13 @@ class VendorPenDecoder {
   /// stays out of range. kUnknownId where no row has its ID.
   ReportClass decode(std::span<const std::uint8_t> report, Timestamp time, PenOutput& out) noexcept;
 
-  /// When the pen will have left if nothing more comes; nothing while it is out of range, or where
-  /// the tablet reports its leaving.
+  /// When the pen will have left if nothing more comes; nothing while it is out of range, where the
+  /// tablet reports its leaving, or once it was overtaken().
   std::optional<Timestamp> due() const noexcept;
+
+  /// A report in none of the rows' forms told of the pen last: it decides whether that is in range,
+  /// and silence tells nothing of it.
+  void overtaken() noexcept { present_ = false; }
 
   /// The pen lifts and leaves, at `time`.
   void leave(Timestamp time, PenOutput& out) noexcept;
@@ -54,8 +58,7 @@ class VendorPenDecoder {
   std::size_t active_ = 0;
   bool tilt_seen_ = false;
   bool bit6_in_range_ = false;  // kUcLogicV1
-  bool present_ = false;        // in range, as told
-  Tool tool_ = Tool::kPen;
+  bool present_ = false;        // in range, as its own reports told last
   Timestamp last_time_{};
 
   ReportClass decode_form(Bytes report, Timestamp time, PenOutput& out) noexcept;

@@ -19,6 +19,15 @@ const ReportBytes kHover = {8, 0x80, 0x10, 0x27, 0x10, 0x27, 0, 0, 0, 0, 0, 0};
 const ReportBytes kContact = {8, 0x81, 0x10, 0x27, 0x10, 0x27, 9, 0, 0, 0, 0, 0};
 const ReportBytes kLeft = {8, 0x00, 0x10, 0x27, 0x10, 0x27, 0, 0, 0, 0, 0, 0};
 
+/// Report 7 of a pen: tip, in range, then X and Y of 16 bits in hundredths of cm.
+const ReportBytes kOtherForm = {
+    0x05, 0x0D, 0x09, 0x02, 0xA1, 0x01, 0x85, 0x07, 0x09, 0x20, 0xA1, 0x00, 0x15, 0x00, 0x25, 0x01,
+    0x75, 0x01, 0x95, 0x02, 0x09, 0x42, 0x09, 0x32, 0x81, 0x02, 0x95, 0x06, 0x81, 0x03, 0x05, 0x01,
+    0x75, 0x10, 0x95, 0x01, 0x55, 0x0E, 0x65, 0x11, 0x46, 0xD0, 0x07, 0x26, 0x20, 0x4E, 0x09, 0x30,
+    0x81, 0x02, 0x46, 0xE8, 0x03, 0x26, 0x10, 0x27, 0x09, 0x31, 0x81, 0x02, 0xC0, 0xC0};
+const ReportBytes kOtherContact = {7, 0x03, 0x10, 0x27, 0x10, 0x27};
+const ReportBytes kOtherLeft = {7, 0x00, 0x10, 0x27, 0x10, 0x27};
+
 std::vector<PenState> states(std::span<const PenSample> samples) {
   std::vector<PenState> states;
   for (const PenSample& sample : samples) states.push_back(sample.state);
@@ -68,6 +77,27 @@ TEST(SilentLeaving, IsNotDueOnceItWasReported) {
   EXPECT_EQ(states(tablet(kLeft, 10ms)), std::vector<PenState>{PenState::kOutOfRange});
   EXPECT_FALSE(tablet.decoder().due());
   EXPECT_TRUE(tablet(kLeft, 20ms).empty());
+}
+
+TEST(SilentLeaving, IsNotDueOnceAReportOfAnotherFormToldIt) {
+  test::DecodedDevice tablet(kHuion, kNew1060Plus, kOtherForm);
+  tablet(kHover, 0ms);
+  EXPECT_EQ(states(tablet(kOtherLeft, 10ms)), std::vector<PenState>{PenState::kOutOfRange});
+  EXPECT_FALSE(tablet.decoder().due());
+  tablet(kHover, 20ms);
+  EXPECT_EQ(tablet.decoder().due(), 20ms + kLeavingTimeout);
+}
+
+TEST(SilentLeaving, IsNoneOfAPenThatReportsInAnotherForm) {
+  test::DecodedDevice tablet(kHuion, kNew1060Plus, kOtherForm);
+  tablet(kHover, 0ms);
+  EXPECT_EQ(states(tablet(kOtherContact, 60ms)), std::vector<PenState>{PenState::kInContact});
+  EXPECT_FALSE(tablet.decoder().due());
+  EXPECT_EQ(states(tablet(kOtherContact, 120ms)), std::vector<PenState>{PenState::kInContact})
+      << "no leaving between";
+  EXPECT_EQ(states(tablet(kLeft, 130ms)),
+            (std::vector<PenState>{PenState::kInRange, PenState::kOutOfRange}))
+      << "either form tells of the same pen";
 }
 
 TEST(SilentLeaving, KeysDoNotKeepThePenInRange) {
