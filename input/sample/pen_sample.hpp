@@ -119,8 +119,10 @@ struct PenSample {
   double twist_rad = 0;   ///< 0 to 2 pi about the pen's own axis, clockwise seen from above
   double distance = 0;    ///< 0 (touching) to 1 (the edge of range)
   std::uint64_t serial = 0;
-  std::uint32_t lost = 0;       ///< reports that are missing just before this sample, as counted
-  bool lost_estimated = false;  ///< nobody counted (all of) `lost`: at least so many are missing
+  std::uint32_t lost = 0;  ///< reports that are missing just before this sample, as counted
+  /// Nobody counted (all of) `lost`: at least so many are missing. 0 after an overrun only: a queue
+  /// was full and perhaps dropped none.
+  bool lost_estimated = false;
   Disturbances disturbances;
   RawCounts raw;
 };

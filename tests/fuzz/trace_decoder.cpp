@@ -187,7 +187,8 @@ void decode(std::span<const std::uint8_t> bytes, bool salvage) {
                       s.disturbances.has(Disturbance::kGap) ||
                       s.disturbances.has(Disturbance::kDamage),
                   "what is lost has a cause");
-    fuzz::require(!s.lost_estimated || s.lost > 0, "an estimate is of something");
+    fuzz::require(!s.lost_estimated || s.lost > 0 || s.disturbances.has(Disturbance::kOverrun),
+                  "an estimate is of something, or of a queue that was full");
     seen.last = s.time;
     seen.any = true;
     lost += s.lost;

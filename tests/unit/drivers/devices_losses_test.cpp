@@ -288,6 +288,22 @@ TEST(TraceDecoderLosses, NotesDamageAndReplugsAreToldWithTheNextSample) {
   EXPECT_EQ(losses.gaps, 0U);
 }
 
+TEST(TraceDecoderLosses, AFullQueueThatMayHaveDroppedNoneIsTold) {
+  const DecodedTrace trace = decode_trace(std::string(kGraphire) +
+                                          "E: 1.0 8 02 90 40 1f 20 03 00 00\n"
+                                          "#limn lost? 0\nE: 2.0 8 02 90 41 1f 20 03 00 00\n"
+                                          "#limn lost 0\nE: 3.0 8 02 90 41 1f 20 03 00 00\n");
+  ASSERT_EQ(trace.samples.size(), 3U);
+  EXPECT_EQ(trace.samples[1].lost, 0U);
+  EXPECT_TRUE(trace.samples[1].lost_estimated);
+  EXPECT_EQ(trace.samples[1].disturbances, Disturbance::kOverrun);
+  EXPECT_FALSE(trace.samples[2].lost_estimated);
+  EXPECT_TRUE(trace.samples[2].disturbances.empty()) << "none was dropped";
+  EXPECT_EQ(trace.summary.losses().overruns, 1U);
+  EXPECT_EQ(trace.summary.losses().lost, 0U);
+  EXPECT_TRUE(trace.summary.losses().lost_estimated);
+}
+
 TEST(TraceDecoderLosses, WhatNoSampleFollowsIsStillCounted) {
   const DecodedTrace trace = decode_trace(
       std::string(kGraphire) + "E: 1.0 8 02 80 40 1f 20 03 00 00\n#limn lost 7\n#limn gone\n");
