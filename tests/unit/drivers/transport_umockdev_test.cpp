@@ -442,11 +442,19 @@ TEST_F(SimulatedNodes, ADeviceThatIsToldTwiceIsReadOnce) {
   plug_in_hidraw();
   std::vector<std::unique_ptr<Transport>> devices;
   devices.push_back(*open_hidraw(Tablet::kHidraw));
-  auto hotplug = watch_tablets();
+  int ends[2];  // of what the watch opens: the far end shows when the reader has let go of it
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends), 0);
+  DeviceWatch watch;
+  watch.wanted = [](const ListedDevice&) { return true; };
+  watch.open = [&ends](const ListedDevice& one) { return open_messages(ends[1], one.device); };
+  auto hotplug = watch_devices(std::move(watch));
   ASSERT_TRUE(hotplug.has_value()) << hotplug.error().what;
   const auto reader = *LiveReader::start(std::move(devices), *std::move(hotplug));
   ASSERT_EQ(next(*reader), "described 0 Simulated Tablet");
   umockdev_testbed_uevent(testbed_, ("/sys" + Tablet::hidraw_path()).c_str(), "add");
+  pollfd far_end{ends[0], POLLIN, 0};
+  ASSERT_EQ(::poll(&far_end, 1, 10000), 1) << "the second one is still there";
+  ::close(ends[0]);
   unplug(Tablet::kHidraw, Tablet::hidraw_path());
   EXPECT_EQ(next(*reader), "note 0 gone");
   reader->stop();
