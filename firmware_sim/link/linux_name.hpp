@@ -11,7 +11,7 @@ namespace limn::firmware {
 std::string linux_name(const DeviceSpec& spec);
 
 /// Where an interface of a simulated device is, in place of "usb-0000:00:14.0-1/input0"; `link`
-/// ("/1") where several links show devices at a time.
+/// ("/1234.0") where several links show devices at a time.
 std::string physical_path(std::uint8_t interface, const std::string& link = {});
 
 }  // namespace limn::firmware

@@ -93,12 +93,21 @@ void expect_steps(const std::vector<json>& samples) {
   }
 }
 
-/// A shell script that runs "$@" and ends it by SIGKILL, so many seconds after the first report was
-/// in the file.
-std::string kill_script(const TempFolder& folder, const std::string& file, double seconds) {
+/// Waits two seconds; or until the file has not grown for one: what is not synced never shows.
+constexpr const char* kTwoSeconds = "sleep 2";
+std::string until_still(const std::string& file) {
+  const std::string size = "$(wc -c <" + file + ")";
+  return "was=; for i in $(seq 30); do now=" + size +
+         "; [ \"$now\" != \"$was\" ] || break; was=$now; sleep 1; done";
+}
+
+/// A shell script that runs "$@", does `when` once the first report is in the file, and ends it by
+/// SIGKILL.
+std::string kill_script(const TempFolder& folder, const std::string& file,
+                        const std::string& when) {
   return folder
       .write("kill", "\"$@\" &\nuntil grep -q '^E: ' " + file +
-                         " 2>/dev/null; do sleep 0.02; done\nsleep " + std::to_string(seconds) +
+                         " 2>/dev/null; do sleep 0.02; done\n" + when +
                          "\nkill -KILL $!\nwait $!\n")
       .string();
 }
@@ -147,7 +156,7 @@ TEST_F(RecordHid, SigkillCostsNoReportThatIsASecondOld) {
   const TempFolder folder;
   const std::string file = folder.path() / "mine.hid";
   const CommandRun run =
-      pen.record(file, "set -- sh " + kill_script(folder, file, 1.5) + " \"$@\"");
+      pen.record(file, "set -- sh " + kill_script(folder, file, until_still(file)) + " \"$@\"");
   ASSERT_EQ(run.exit_code, 128 + SIGKILL) << run.err;
   const auto samples = samples_of(file);
   EXPECT_EQ(samples.size(), std::size_t{HidPen::kReports});
@@ -163,7 +172,7 @@ TEST_F(Record, SigkillCostsNoFrameThatIsASecondOld) {
   const std::string file = folder.path() / "mine.evemu";
   const CommandRun run =
       tablet.limn(std::string("record ") + SimulatedTablet::kEvent + " -o " + file,
-                  "sh " + kill_script(folder, file, 2));
+                  "sh " + kill_script(folder, file, kTwoSeconds));
   ASSERT_EQ(run.exit_code, 128 + SIGKILL) << run.err;
   const auto samples = samples_of(file);
   EXPECT_GE(samples.size(), std::size_t{kSurelySent});

@@ -28,7 +28,7 @@ using namespace std::chrono_literals;
 constexpr auto kPatience = 20s;
 constexpr auto kLookAgain = 100ms;  // looking is work for an emulated processor
 
-/// UHID has a place where USB has an interface: "limn/input1".
+/// UHID has a place where USB has an interface: "limn/simulated/1234.0/input1".
 int interface_of(const ListedDevice& row) {
   if (row.interface_number >= 0) return row.interface_number;
   const std::string& path = row.device.physical_path;
