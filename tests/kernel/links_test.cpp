@@ -97,8 +97,8 @@ TEST_F(KernelLinks, NoReportOfAFastPenIsLostOnHidrawAndEvdev) {
   const Taken expected = expected_from("fast-pen", "signature", kLong + 1000, Setup::kNone);
   Held by_uhid("fast-pen", "signature");
   Held by_usbip("fast-pen", "signature");
-  const PluggedDevice uhid(by_uhid.device, Cable::kUhid, false);
-  const PluggedDevice usbip(by_usbip.device, Cable::kUsbip, false);
+  const PluggedDevice uhid(by_uhid.device, Cable::kUhid);
+  const PluggedDevice usbip(by_usbip.device, Cable::kUsbip);
   std::vector<Taking> raw;
   std::vector<Taking> decoded;
   for (const Cable cable : {Cable::kUhid, Cable::kUsbip}) {
@@ -127,8 +127,8 @@ TEST_F(KernelLinks, NoReportOfAFastPenIsLostByLibusb) {
   const Taken expected = expected_from("fast-pen", "signature", kLong, Setup::kNone);
   Held one("fast-pen", "signature");
   Held other("fast-pen", "signature");
-  const PluggedDevice first(one.device, Cable::kUsbip, false);
-  const PluggedDevice second(other.device, Cable::kUsbip, false);
+  const PluggedDevice first(one.device, Cable::kUsbip);
+  const PluggedDevice second(other.device, Cable::kUsbip);
   const auto rows = wait_for_rows(Backend::kUsb, one.device.spec(), Cable::kUsbip, 2);
   ASSERT_EQ(rows.size(), 2U);
   wait_for_rows(Backend::kHidraw, one.device.spec(), Cable::kUsbip, 2);  // Linux's drivers are done
@@ -151,7 +151,7 @@ class AllOthers {
       if (info.name == "fast-pen") continue;
       const bool pen = info.kind == firmware::SimulatedKind::kPen;
       held_.push_back(std::make_unique<Held>(info.name, pen ? "signature" : "push"));
-      plugged_.push_back(std::make_unique<PluggedDevice>(held_.back()->device, cable, false));
+      plugged_.push_back(std::make_unique<PluggedDevice>(held_.back()->device, cable));
     }
   }
 
@@ -232,8 +232,8 @@ void expect_event_nodes(Cable cable) {
   constexpr std::size_t kChanges = 150;  // of a push's 206 reports
   Held pen("pen", "signature");
   Held mouse("spacemouse", "push");
-  const PluggedDevice plugged_pen(pen.device, cable, false);
-  const PluggedDevice plugged_mouse(mouse.device, cable, false);
+  const PluggedDevice plugged_pen(pen.device, cable);
+  const PluggedDevice plugged_mouse(mouse.device, cable);
   Taking of_pen(wait_for_rows(Backend::kEvdev, pen.device.spec(), cable, 1), kShort);
   Taking of_mouse(wait_for_rows(Backend::kEvdev, mouse.device.spec(), cable, 1), kChanges);
   of_pen.wait_until_open();

@@ -71,7 +71,7 @@ void switch_smoothing_off(const ListedDevice& row) {
 void expect_decoded_alike(const char* name, Cable cable, const char* driver, Setup setup) {
   SCOPED_TRACE(std::string(name) + " by " + test::name(cable));
   Held held(name, "signature");
-  const PluggedDevice plugged(held.device, cable, false);
+  const PluggedDevice plugged(held.device, cable);
   const ListedDevice node = wait_for_pen_node(held, cable, driver);
   switch_smoothing_off(node);
   // hid-uclogic takes two of the XP-Pen's three interfaces.
@@ -159,7 +159,7 @@ TEST_F(KernelOracles, LibinputReadsThePenAsLimnDoes) {
   std::ofstream("/etc/libinput/local-overrides.quirks")
       << "[as the device says]\nMatchUdevType=tablet\nAttrTabletSmoothing=0\n";
   Held held("pen", "signature");
-  const PluggedDevice plugged(held.device, Cable::kUsbip, false);
+  const PluggedDevice plugged(held.device, Cable::kUsbip);
   const ListedDevice node = wait_for_pen_node(held, Cable::kUsbip, "hid-generic");
   Program libinput("/usr/libexec/libinput/libinput-debug-events --device " + node.node);
   ASSERT_NE(libinput.line().find("DEVICE_ADDED"), std::string::npos);
@@ -236,7 +236,7 @@ std::vector<Deflections> by_libspnav(const Taken& taken) {
 TEST_F(KernelOracles, SpacenavdReadsA3dMouseAsLimnDoes) {
   ASSERT_EQ(std::system("cd / && timeout 20 spacenavd -d >/dev/null 2>&1 &"), 0);
   Held held("spacemouse", "push");
-  const PluggedDevice plugged(held.device, Cable::kUsbip, false);
+  const PluggedDevice plugged(held.device, Cable::kUsbip);
   wait_for_rows(Backend::kHidraw, held.device.spec(), Cable::kUsbip, 1);
   std::this_thread::sleep_for(2s);  // spacenavd is told by udev, too, and says nothing of it
   const auto row = find_spacenavd();

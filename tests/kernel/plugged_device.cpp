@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include "firmware_sim/link/uhid.hpp"
@@ -35,10 +36,7 @@ std::optional<std::uint32_t> free_port() {
   return std::nullopt;
 }
 
-}  // namespace
-
-const char* name(Cable cable) { return cable == Cable::kUhid ? "UHID" : "USB/IP"; }
-
+/// One end of a socket pair, whose other end Linux's virtual USB controller has.
 FileDescriptor plug_into_vhci() {
   static std::mutex one_at_a_time;  // between looking at a port and having it
   const std::lock_guard lock(one_at_a_time);
@@ -54,16 +52,19 @@ FileDescriptor plug_into_vhci() {
   return ours;
 }
 
-PluggedDevice::PluggedDevice(firmware::BusDevice& device, Cable cable, bool wait) {
+}  // namespace
+
+const char* name(Cable cable) { return cable == Cable::kUhid ? "UHID" : "USB/IP"; }
+
+PluggedDevice::PluggedDevice(firmware::BusDevice& device, Cable cable) {
   auto waiter = firmware::Waiter::make();
   if (!waiter) {
     ADD_FAILURE() << waiter.error().what;
     return;
   }
   waiter_ = std::make_unique<firmware::Waiter>(*std::move(waiter));
-  thread_ = std::thread([this, &device, cable, wait] {
-    cable == Cable::kUhid ? serve_uhid(device, wait) : serve_usbip(device, wait);
-  });
+  thread_ = std::thread(
+      [this, &device, cable] { cable == Cable::kUhid ? serve_uhid(device) : serve_usbip(device); });
 }
 
 PluggedDevice::~PluggedDevice() {
@@ -71,9 +72,9 @@ PluggedDevice::~PluggedDevice() {
   if (thread_.joinable()) thread_.join();
 }
 
-void PluggedDevice::serve_uhid(firmware::BusDevice& device, bool wait) {
+void PluggedDevice::serve_uhid(firmware::BusDevice& device) {
   firmware::UhidOptions options;
-  options.wait_for_reader = wait;
+  options.wait_for_reader = false;
   auto link = firmware::UhidLink::open(device, options);
   ASSERT_TRUE(link) << link.error().what << "; " << link.error().remedy;
   const auto ended = link->run(kForever, *waiter_);
@@ -81,10 +82,10 @@ void PluggedDevice::serve_uhid(firmware::BusDevice& device, bool wait) {
   EXPECT_EQ(link->refused(), 0U);
 }
 
-void PluggedDevice::serve_usbip(firmware::BusDevice& device, bool wait) {
+void PluggedDevice::serve_usbip(firmware::BusDevice& device) {
   using Kind = firmware::UsbipNotice::Kind;
   firmware::UsbipOptions options;
-  options.wait_for_reader = wait;
+  options.wait_for_reader = false;
   firmware::UsbipServer* running = nullptr;
   firmware::UsbipServer server(device, options, [&running](const firmware::UsbipNotice& notice) {
     EXPECT_NE(notice.kind, Kind::kRefused) << notice.text;

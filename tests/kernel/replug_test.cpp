@@ -84,7 +84,7 @@ class CycledDevice final : public firmware::BusDevice {
 /// A tablet of its own place, with its pen.
 struct ReplugTablet {
   ReplugTablet(Cable cable, Cycles cycles)
-      : device(tablet_device, cycles), plugged(device, cable, false) {}
+      : device(tablet_device, cycles), plugged(device, cable) {}
 
   DraggedPen pen;
   firmware::HidPenTablet tablet{pen, firmware::HidPenTablet::Pace::kUsual};
