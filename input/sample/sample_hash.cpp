@@ -54,4 +54,22 @@ std::uint64_t hash_sample(const PenSample& sample, std::uint64_t before) noexcep
   return fnv.hash();
 }
 
+std::uint64_t hash_sample(const MotionSample& sample, std::uint64_t before) noexcept {
+  Fnv1a fnv(before);
+  fnv.add(static_cast<std::int64_t>(sample.time.count()));
+  fnv.add(sample.device);
+  for (const double value : sample.deflection) fnv.add(value);
+  for (const std::int32_t count : sample.raw) fnv.add(count);
+  for (const bool flag : {sample.translation_told, sample.rotation_told, sample.rests_exactly,
+                          sample.silence, sample.battery_percent.has_value()}) {
+    fnv.add(flag);
+  }
+  for (const std::uint64_t word : sample.buttons.words()) fnv.add(word);
+  fnv.add(sample.battery_percent.value_or(0));
+  fnv.add(sample.lost);
+  fnv.add(sample.lost_estimated);
+  fnv.add(sample.disturbances.bits());
+  return fnv.hash();
+}
+
 }  // namespace limn

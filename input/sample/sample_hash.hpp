@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "input/sample/motion_sample.hpp"
 #include "input/sample/pen_sample.hpp"
 
 namespace limn {
@@ -14,5 +15,6 @@ inline constexpr std::uint64_t kEmptySampleHash = 0xCBF29CE484222325U;
 /// where every bit is (0.0 and -0.0 differ).
 /// Source: Fowler, Noll, Vo, draft-eastlake-fnv.
 std::uint64_t hash_sample(const PenSample& sample, std::uint64_t before) noexcept;
+std::uint64_t hash_sample(const MotionSample& sample, std::uint64_t before) noexcept;
 
 }  // namespace limn
