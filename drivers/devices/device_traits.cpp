@@ -1,11 +1,10 @@
 #include "drivers/devices/device_traits.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "drivers/devices/evdev_pen_decoder.hpp"
-#include "drivers/hid/descriptor_parser.hpp"
-#include "drivers/hid/usages.hpp"
+#include "drivers/devices/motion_decoder.hpp"
+#include "drivers/devices/motion_spec.hpp"
 
 namespace limn {
 namespace {
@@ -13,15 +12,6 @@ namespace {
 // <linux/input-event-codes.h>
 constexpr std::uint16_t kAbsX = 0x00;
 constexpr std::uint16_t kAbsRz = 0x05;
-
-bool is_multi_axis_controller(std::span<const std::uint8_t> report_descriptor) {
-  const auto descriptor = hid::parse_descriptor(report_descriptor);
-  return descriptor && std::any_of(descriptor->collections.begin(), descriptor->collections.end(),
-                                   [](const hid::Collection& collection) {
-                                     return collection.parent == hid::kNoCollection &&
-                                            collection.usage == hid::usage::kMultiAxisController;
-                                   });
-}
 
 bool has_six_axes(const std::vector<EvdevAxis>& axes) {
   return std::count_if(axes.begin(), axes.end(), [](const EvdevAxis& axis) {
@@ -45,49 +35,18 @@ DeviceTraits kernel_pen(const TraceDevice& device) {
 
 }  // namespace
 
-bool is_3d_mouse_id(std::uint16_t vendor, std::uint16_t product) noexcept {
-  struct Id {
-    std::uint16_t vendor;
-    std::uint16_t product;
-  };
-  constexpr auto kIds = std::to_array<Id>({
-      {0x046D, 0xC603},  // SpaceMouse Plus XT
-      {0x046D, 0xC605},  // CadMan
-      {0x046D, 0xC606},  // SpaceMouse Classic
-      {0x046D, 0xC621},  // SpaceBall 5000
-      {0x046D, 0xC623},  // SpaceTraveler
-      {0x046D, 0xC625},  // SpacePilot
-      {0x046D, 0xC626},  // SpaceNavigator
-      {0x046D, 0xC627},  // SpaceExplorer
-      {0x046D, 0xC628},  // SpaceNavigator for Notebooks
-      {0x046D, 0xC629},  // SpacePilot Pro
-      {0x046D, 0xC62B},  // SpaceMouse Pro
-      {0x046D, 0xC640},  // NuLOOQ
-      {0x256F, 0xC62E},  // SpaceMouse Wireless, by its cable
-      {0x256F, 0xC62F},  // SpaceMouse Wireless, receiver
-      {0x256F, 0xC631},  // SpaceMouse Pro Wireless, by its cable
-      {0x256F, 0xC632},  // SpaceMouse Pro Wireless, receiver
-      {0x256F, 0xC633},  // SpaceMouse Enterprise
-      {0x256F, 0xC635},  // SpaceMouse Compact
-      {0x256F, 0xC636},  // SpaceMouse Module
-      {0x256F, 0xC638},  // SpaceMouse Pro Wireless Bluetooth, by its cable
-      {0x256F, 0xC63A},  // SpaceMouse Wireless Bluetooth
-  });
-  return std::any_of(kIds.begin(), kIds.end(), [vendor, product](const Id& id) {
-    return id.vendor == vendor && id.product == product;
-  });
+bool is_3d_mouse(const TraceDevice& device) {
+  if (device.physical_path == kSpacenavdPath) return true;
+  const bool by_ids = find_motion_spec(device.vendor, device.product) != nullptr;
+  const bool is_mouse = device.report_descriptor.empty()
+                            ? by_ids
+                            : is_multi_axis_controller(device.report_descriptor);
+  return is_mouse && (device.axes.empty() || has_six_axes(device.axes));
 }
 
 DeviceTraits traits_of(const TraceDevice& device) {
-  const DeviceTraits mouse{DeviceKind::k3dMouse, "3D mouse", {}, {}};
-  const bool is_mouse = device.report_descriptor.empty()
-                            ? is_3d_mouse_id(device.vendor, device.product)
-                            : is_multi_axis_controller(device.report_descriptor);
-  if (!device.axes.empty()) {
-    if (!is_mouse) return kernel_pen(device);
-    return has_six_axes(device.axes) ? mouse : DeviceTraits{};
-  }
-  if (is_mouse) return mouse;
+  if (is_3d_mouse(device)) return {DeviceKind::k3dMouse, "3D mouse", {}, {}};
+  if (!device.axes.empty()) return kernel_pen(device);
   PenIdentity identity;
   identity.vendor = device.vendor;
   identity.product = device.product;

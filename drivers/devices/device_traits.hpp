@@ -19,14 +19,16 @@ struct DeviceTraits {
   PenRange range;  ///< of a pen: zero where its axes' ranges are not known
 };
 
+/// The physical path of what spacenavd gives, whichever device is behind it.
+inline constexpr std::string_view kSpacenavdPath = "spacenavd";
+
 /// Tells a HID device by its ids, its name and its descriptor, and what the kernel decodes (a
 /// device with `axes`) by its axes: of a tablet's several event nodes only the pen's is one. 3D
 /// mice are known by their descriptor (Generic Desktop, Multi-axis Controller), without one by
-/// their ids. limn lists and records them and watches their reports.
+/// their ids (motion_spec.hpp).
 DeviceTraits traits_of(const TraceDevice& device);
 
-/// Whether these are the USB ids of a 3D mouse. 3Dconnexion's vendor id alone says too little: it
-/// makes ordinary mice and keyboards, too. Source: spacenavd, dev.c.
-bool is_3d_mouse_id(std::uint16_t vendor, std::uint16_t product) noexcept;
+/// Whether that kind is k3dMouse.
+bool is_3d_mouse(const TraceDevice& device);
 
 }  // namespace limn

@@ -60,6 +60,15 @@ void LossTracker::reset() noexcept {
 }
 
 void LossTracker::complete(PenSample& sample, bool paced) noexcept {
+  tell_what_was(sample);
+  if (paced) estimate(sample);
+  last_ = sample;
+}
+
+void LossTracker::complete(MotionSample& sample) noexcept { tell_what_was(sample); }
+
+template <class Sample>
+void LossTracker::tell_what_was(Sample& sample) noexcept {
   const std::uint32_t told = std::exchange(lost_, 0);
   const bool told_estimated = std::exchange(estimated_, false);
   if (sample.disturbances.has(Disturbance::kGap) && sample.lost <= told) {
@@ -75,12 +84,12 @@ void LossTracker::complete(PenSample& sample, bool paced) noexcept {
   losses_.lost_estimated |= sample.lost_estimated;
   sample.lost_estimated |= told_estimated && told >= counted;
   sample.disturbances.add(std::exchange(disturbances_, {}));
-  if (last_ && sample.time < last_->time && !sample.disturbances.has(Disturbance::kClockJump)) {
+  if (last_time_ && sample.time < *last_time_ &&
+      !sample.disturbances.has(Disturbance::kClockJump)) {
     ++losses_.clock_jumps;
     sample.disturbances.add(Disturbance::kClockJump);
   }
-  if (paced) estimate(sample);
-  last_ = sample;
+  last_time_ = sample.time;
 }
 
 void LossTracker::estimate(PenSample& sample) noexcept {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "input/base/time.hpp"
+#include "input/sample/motion_sample.hpp"
 #include "input/sample/pen_sample.hpp"
 
 namespace limn {
@@ -53,6 +54,9 @@ class LossTracker {
   /// Completes the next sample. `paced`: it is a report's, not a row that somebody wrote.
   void complete(PenSample& sample, bool paced) noexcept;
 
+  /// The same for a 3D mouse, whose decoder itself tells of silence in mid-motion.
+  void complete(MotionSample& sample) noexcept;
+
   const StreamLosses& losses() const noexcept { return losses_; }
 
  private:
@@ -68,6 +72,8 @@ class LossTracker {
     void add(const Step& step) noexcept;
   };
 
+  template <class Sample>
+  void tell_what_was(Sample& sample) noexcept;
   void reset() noexcept;
   void tell(std::uint32_t count, bool estimated, Disturbance what) noexcept;
   void estimate(PenSample& sample) noexcept;
@@ -78,6 +84,7 @@ class LossTracker {
   Disturbances disturbances_;
   bool known_ = false;  // described once
   bool away_ = false;
+  std::optional<Timestamp> last_time_;
   std::optional<PenSample> last_;
   Pace before_;  // a whole block, once it has kPaceSteps
   Pace now_;

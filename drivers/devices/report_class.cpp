@@ -5,9 +5,16 @@
 namespace limn {
 
 std::string_view name(ReportClass report) noexcept {
-  constexpr std::array<std::string_view, kReportClassCount> kNames = {
-      "pen",       "touch",           "pad", "mouse", "status", "other", "unknown report ID",
-      "too short", "pen without size"};
+  constexpr std::array<std::string_view, kReportClassCount> kNames = {"pen",
+                                                                      "touch",
+                                                                      "pad",
+                                                                      "mouse",
+                                                                      "status",
+                                                                      "other",
+                                                                      "unknown report ID",
+                                                                      "too short",
+                                                                      "motion",
+                                                                      "pen without size"};
   return kNames[static_cast<std::size_t>(report)];
 }
 

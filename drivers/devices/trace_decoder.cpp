@@ -5,6 +5,9 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/devices/device_traits.hpp"
+#include "drivers/devices/evdev_motion_decoder.hpp"
+#include "drivers/devices/motion_decoder.hpp"
 #include "drivers/devices/pen_initialization.hpp"
 #include "input/trace/noted_loss.hpp"
 #include "input/trace/noted_string.hpp"
@@ -45,6 +48,8 @@ struct TraceDecoder::Device {
   std::vector<NotedString> strings;  // noted since the description, at most kMostStrings
   std::optional<PenDecoder> reports;
   std::optional<EvdevPenDecoder> frames;
+  std::optional<MotionDecoder> motions;
+  std::optional<EvdevMotionDecoder> motion_frames;
   bool stale = true;                  // a decoder is to be made (again) before the next report
   bool refused = false;               // salvaging: nothing can be decoded
   std::uint64_t repaired_before = 0;  // by decoders that a new description replaced
@@ -52,6 +57,20 @@ struct TraceDecoder::Device {
   LossTracker losses;
 
   static constexpr std::size_t kMostStrings = 8;  // twice what any initialisation reads
+
+  void forget_decoders() noexcept {
+    reports.reset();
+    frames.reset();
+    motions.reset();
+    motion_frames.reset();
+  }
+
+  /// When it says something without a report.
+  std::optional<Timestamp> due() const noexcept {
+    if (reports) return reports->due();
+    if (motions) return motions->due();
+    return motion_frames ? motion_frames->due() : std::nullopt;
+  }
 
   std::uint64_t repaired_now() const noexcept {
     return (reports ? reports->repaired_transitions() : 0) +
@@ -83,39 +102,57 @@ TraceDecoder& TraceDecoder::operator=(TraceDecoder&&) noexcept = default;
 TraceDecoder::~TraceDecoder() = default;
 
 Expected<const PenSample*> TraceDecoder::next() {
+  for (;;) {
+    auto sample = next_any();
+    if (!sample) return tl::unexpected(std::move(sample.error()));
+    if (const auto* const pen = std::get_if<const PenSample*>(&*sample)) return *pen;
+    if (std::holds_alternative<std::monostate>(*sample)) return nullptr;
+  }
+}
+
+Expected<AnySample> TraceDecoder::next_any() {
   if (error_) return tl::unexpected(*error_);
-  while (pending_.empty() && !ended_) {
+  while (pending_.empty() && pending_motions_.empty() && !ended_) {
     const Step step = advance();
     if (!step) {
       error_ = step.error();
       return tl::unexpected(*error_);
     }
   }
-  if (pending_.empty()) return nullptr;
-  sample_ = pending_.front();
-  sample_.time -= start_.value_or(Timestamp{});
-  pending_ = pending_.subspan(1);
-  pending_from_->losses.complete(sample_, reader_->format() != TraceFormat::kStrokeCsv);
+  const Timestamp start = start_.value_or(Timestamp{});
+  if (!pending_.empty()) {
+    sample_ = pending_.front();
+    sample_.time -= start;
+    pending_ = pending_.subspan(1);
+    pending_from_->losses.complete(sample_, reader_->format() != TraceFormat::kStrokeCsv);
+    ++samples_;
+    return &sample_;
+  }
+  if (pending_motions_.empty()) return AnySample();
+  motion_ = pending_motions_.front();
+  motion_.time -= start;
+  pending_motions_ = pending_motions_.subspan(1);
+  pending_from_->losses.complete(motion_);
   ++samples_;
-  return &sample_;
+  return &motion_;
 }
 
-/// One event of the stream: the reader's next, or a pen's silent leaving that is due before it.
+/// One event of the stream: the reader's next, or what a device's silence means before it.
 TraceDecoder::Step TraceDecoder::advance() {
   Device* const leaving = next_to_leave();
-  auto event = reader_->next_until(leaving ? *leaving->reports->due() : Timestamp::max());
+  auto event = reader_->next_until(leaving ? *leaving->due() : Timestamp::max());
   if (!event) return tl::unexpected(std::move(event.error()));
   if (*event) return std::visit([this](const auto& content) { return take(content); }, **event);
   if (leaving != nullptr) leave_silently(*leaving);
   return {};
 }
 
-/// The device whose pen leaves first if nothing more comes, if any.
+/// The device whose pen leaves (whose motion ends) first if nothing more comes, if any.
 TraceDecoder::Device* TraceDecoder::next_to_leave() const noexcept {
   Device* first = nullptr;
   Timestamp earliest = Timestamp::max();
   for (const auto& device : devices_) {
-    const auto due = device->reports ? device->reports->due() : std::optional<Timestamp>();
+    const auto due = device->due();
     if (!due || (first != nullptr && earliest <= *due)) continue;
     first = device.get();
     earliest = *due;
@@ -124,8 +161,14 @@ TraceDecoder::Device* TraceDecoder::next_to_leave() const noexcept {
 }
 
 void TraceDecoder::leave_silently(Device& device) noexcept {
-  const Timestamp due = *device.reports->due();
-  give(device, device.reports->advance(device.summary.index, due), due);
+  const Timestamp due = *device.due();
+  if (device.reports) {
+    give(device, device.reports->advance(device.summary.index, due), due);
+  } else if (device.motions) {
+    give(device, device.motions->advance(due), due);
+  } else {
+    give(device, device.motion_frames->advance(due), due);
+  }
 }
 
 TraceSummary TraceDecoder::summary() const {
@@ -142,7 +185,7 @@ TraceSummary TraceDecoder::summary() const {
   return summary;
 }
 
-// Once the trace is over, pens that leave silently leave as if more time went by, in its order.
+// Once the trace is over, what silence means comes as if more time went by, in its order.
 // Each step hands out one device's samples; the reader's end comes again for the next.
 TraceDecoder::Step TraceDecoder::take(TraceEnd) {
   if (Device* const leaving = next_to_leave()) {
@@ -168,15 +211,17 @@ TraceDecoder::Step TraceDecoder::take(const DeviceDescribed& described) {
   return {};
 }
 
-/// What the device held in range is gone.
+/// What the device held in range, moved or pressed is gone.
 void TraceDecoder::leave(Device& device) noexcept {
-  if (device.reports) {
-    give(device, device.reports->disconnect(device.summary.index, device.last_time),
-         device.last_time);
-  } else if (device.frames) {
-    give(device, device.frames->disconnect(device.summary.index, device.last_time),
-         device.last_time);
-  }
+  const auto disconnect = [this, &device](auto& decoder) {
+    if (decoder) {
+      give(device, decoder->disconnect(device.summary.index, device.last_time), device.last_time);
+    }
+  };
+  disconnect(device.reports);
+  disconnect(device.frames);
+  disconnect(device.motions);
+  disconnect(device.motion_frames);
 }
 
 TraceDecoder::Step TraceDecoder::take(const Report& report) {
@@ -189,11 +234,14 @@ TraceDecoder::Step TraceDecoder::take(const Report& report) {
     ++device.summary.undecodable_reports;
     return {};
   }
-  const PenDecoder::Decoded decoded = device.reports->decode(report);
-  ++device.summary.reports[static_cast<std::size_t>(decoded.kind)];
-  if (auto known = check(device, decoded.kind, report.bytes); !known) return known;
-  give(device, decoded.samples, report.time);
-  return {};
+  const auto take_decoded = [&](const auto& decoded) -> Step {
+    ++device.summary.reports[static_cast<std::size_t>(decoded.kind)];
+    if (auto known = check(device, decoded.kind, report.bytes); !known) return known;
+    give(device, decoded.samples, report.time);
+    return {};
+  };
+  return device.motions ? take_decoded(device.motions->decode(report))
+                        : take_decoded(device.reports->decode(report));
 }
 
 TraceDecoder::Step TraceDecoder::check(const Device& device, ReportClass kind,
@@ -225,7 +273,12 @@ TraceDecoder::Step TraceDecoder::take(const EvdevFrame& frame) {
   Device& device = **found;
   ++device.summary.frames;
   if (auto ready = prepare_kernel(device); !ready) return ready;
-  if (!device.refused) give(device, device.frames->decode(frame), frame.time);
+  if (device.refused) return {};
+  if (device.motion_frames) {
+    give(device, device.motion_frames->decode(frame), frame.time);
+  } else {
+    give(device, device.frames->decode(frame), frame.time);
+  }
   return {};
 }
 
@@ -284,13 +337,26 @@ Expected<TraceDecoder::Device*> TraceDecoder::device(DeviceIndex index) {
   return devices_.back().get();
 }
 
-TraceDecoder::Step TraceDecoder::prepare(Device& device) {
-  if (!device.stale && (device.reports || device.refused)) return {};
+/// Before a decoder is made for what was described last.
+void TraceDecoder::begin_anew(Device& device) noexcept {
   device.stale = false;
   device.refused = false;
   device.repaired_before += device.repaired_now();
-  device.reports.reset();
-  device.frames.reset();
+  device.forget_decoders();
+}
+
+TraceDecoder::Step TraceDecoder::prepare(Device& device) {
+  if (!device.stale && (device.reports || device.motions || device.refused)) return {};
+  begin_anew(device);
+  if (is_3d_mouse(device.described)) {
+    auto decoder = MotionDecoder::make(device.described.vendor, device.described.product,
+                                       device.described.report_descriptor);
+    device.described.report_descriptor = {};
+    if (!decoder) return refuse(device, std::move(decoder.error()));
+    device.motions.emplace(std::move(*decoder));
+    device.summary.kind = "3D mouse";
+    return {};
+  }
   PenIdentity identity;
   identity.vendor = device.described.vendor;
   identity.product = device.described.product;
@@ -307,12 +373,13 @@ TraceDecoder::Step TraceDecoder::prepare(Device& device) {
 }
 
 TraceDecoder::Step TraceDecoder::prepare_kernel(Device& device) {
-  if (!device.stale && (device.frames || device.refused)) return {};
-  device.stale = false;
-  device.refused = false;
-  device.repaired_before += device.repaired_now();
-  device.reports.reset();
-  device.frames.reset();
+  if (!device.stale && (device.frames || device.motion_frames || device.refused)) return {};
+  begin_anew(device);
+  if (is_3d_mouse(device.described)) {
+    device.motion_frames.emplace(device.described);
+    device.summary.kind = "3D mouse";
+    return {};
+  }
   auto decoder = EvdevPenDecoder::make(device.described);
   if (!decoder) return refuse(device, std::move(decoder.error()));
   device.frames.emplace(std::move(*decoder));
@@ -352,6 +419,14 @@ void TraceDecoder::give(Device& device, std::span<const PenSample> samples,
   device.last_time = time;
   device.summary.samples += samples.size();
   pending_ = samples;
+  pending_from_ = &device;
+}
+
+void TraceDecoder::give(Device& device, std::span<const MotionSample> samples,
+                        Timestamp time) noexcept {
+  device.last_time = time;
+  device.summary.samples += samples.size();
+  pending_motions_ = samples;
   pending_from_ = &device;
 }
 

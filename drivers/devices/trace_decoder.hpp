@@ -15,6 +15,7 @@
 #include "drivers/devices/pen_decoder.hpp"
 #include "drivers/devices/report_class.hpp"
 #include "input/base/error.hpp"
+#include "input/sample/motion_sample.hpp"
 #include "input/sample/pen_sample.hpp"
 #include "input/trace/trace.hpp"
 
@@ -26,7 +27,7 @@ struct TraceDeviceSummary {
   std::string name;
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
-  /// Family of the table's row, "HID pen", "kernel pen", "no pen", or "unknown".
+  /// Family of the table's row, "HID pen", "kernel pen", "3D mouse", "no pen", or "unknown".
   std::string kind = "unknown";
   PenRange range;
   std::uint64_t samples = 0;
@@ -58,14 +59,18 @@ struct TraceDecoderOptions {
   bool salvage = false;
 };
 
-/// Trace -> PenSamples of all its devices, in file order, pulled one by one. Sample times are the
-/// file's minus that of its first report, frame or sample. What the trace tells of missing reports
-/// (TraceDamage, "lost N" notes) and of replugs is told with their device's next sample, and so are
-/// gaps and clocks that jump (LossTracker); a "gone" note takes what is in range out of it;
-/// "string" notes before its first report are what the device answered when it was initialised, and
-/// its decoder goes by them. Constant memory.
+/// A sample of some device, or the end.
+using AnySample = std::variant<std::monostate, const PenSample*, const MotionSample*>;
+
+/// Trace -> samples of all its devices, pens and 3D mice, in file order, pulled one by one. Sample
+/// times are the file's minus that of its first report, frame or sample. What the trace tells of
+/// missing reports (TraceDamage, "lost N" notes) and of replugs is told with their device's next
+/// sample, and so are gaps and clocks that jump (LossTracker); a "gone" note takes what is in range
+/// out of it; "string" notes before its first report are what the device answered when it was
+/// initialised, and its decoder goes by them. Constant memory.
 ///
-/// A pen that leaves silently (PenDecoder) leaves before its device's next report, or at the end,
+/// A pen that leaves silently (PenDecoder) leaves, and the motion of a 3D mouse that falls silent
+/// (MotionDecoder) ends, before its device's next report, or at the end,
 /// or as soon as a reader that waits says that it was silent for so long (next_until): what each
 /// device gives is the same whether it is live, replayed at any speed or decoded at once. Between
 /// devices the order is that of the reader's events, and a silent leaving comes out when it shows.
@@ -84,13 +89,17 @@ class TraceDecoder {
   TraceDecoder& operator=(TraceDecoder&&) noexcept;
   ~TraceDecoder();
 
-  /// The next sample, valid until the next call, or nullptr at the end.
+  /// The next sample of a pen, valid until the next call, or nullptr at the end. 3D mice are passed
+  /// over.
   ///
   /// Errors: the reader's; kMissing for a report of a device without descriptor or table row, and
   /// for a pen's report without a physical size; kUnknown for a report ID that neither descriptor
   /// nor table knows; kLimit for more than kMaxDevices devices; a broken descriptor's. `at` names
   /// the place in the file. After an error the decoder is spent and gives the same error again.
   Expected<const PenSample*> next();
+
+  /// The next sample of any device, valid until the next call. Errors: next()'s.
+  Expected<AnySample> next_any();
 
   /// What was seen so far.
   TraceSummary summary() const;
@@ -105,8 +114,10 @@ class TraceDecoder {
   TraceDecoderOptions options_;
   std::vector<std::unique_ptr<Device>> devices_;
   std::span<const PenSample> pending_;
+  std::span<const MotionSample> pending_motions_;
   Device* pending_from_ = nullptr;
   PenSample sample_;
+  MotionSample motion_;
   std::optional<Timestamp> start_;
   std::optional<Error> error_;
   std::uint64_t samples_ = 0;
@@ -128,6 +139,7 @@ class TraceDecoder {
 
   void leave(Device& device) noexcept;
   Expected<Device*> device(DeviceIndex index);
+  static void begin_anew(Device& device) noexcept;
   Step prepare(Device& device);
   Step prepare_kernel(Device& device);
   Step refuse(Device& device, Error error);
@@ -136,6 +148,7 @@ class TraceDecoder {
   std::string label(const Device& device) const;
   void start_at(Timestamp time) noexcept;
   void give(Device& device, std::span<const PenSample> samples, Timestamp time) noexcept;
+  void give(Device& device, std::span<const MotionSample> samples, Timestamp time) noexcept;
 };
 
 }  // namespace limn

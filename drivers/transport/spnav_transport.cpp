@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "drivers/devices/device_traits.hpp"
 #include "drivers/transport/paced_reader.hpp"
 
 // libspnav's other half speaks X11, whose header is not needed here.
@@ -104,7 +105,7 @@ class ChosenSocket {
 TraceDevice describe() {
   TraceDevice device;
   device.name = "3D mouse of spacenavd";
-  device.physical_path = "spacenavd";
+  device.physical_path = kSpacenavdPath;
   for (std::uint16_t code = ABS_X; code <= ABS_RZ; ++code) device.axes.push_back({code});
   if (spnav_protocol() < 1) return device;
   unsigned vendor = 0;

@@ -76,7 +76,8 @@ DragVelocity::Six DragVelocity::shaped(const Six& deflection) noexcept {
   if (options_.dominant_axis) keep_dominant(axes);
   Six result;
   for (std::size_t i = 0; i < kMotionAxes; ++i) {
-    result[i] = options_.sensitivity[i] * axes[options_.source[i]];
+    const double value = options_.sensitivity[i] * axes[options_.source[i]];
+    result[i] = options_.inverted[i] ? 0 - value : value;  // never -0
   }
   return result;
 }

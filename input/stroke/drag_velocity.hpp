@@ -22,8 +22,9 @@ struct DragOptions {
   /// 0: velocity is proportional to deflection; 1: to its cube; between: a blend. Full deflection
   /// gives full velocity with any.
   double curve = 0;
-  /// Factor of each axis of the result; negative: inverted; 0: off.
+  /// Factor of each axis of the result; 0: off.
   std::array<double, kMotionAxes> sensitivity{1, 1, 1, 1, 1, 1};
+  std::array<bool, kMotionAxes> inverted{};  ///< axes of the result
   /// Which axis of the device drives each axis of the result.
   std::array<std::uint8_t, kMotionAxes> source{0, 1, 2, 3, 4, 5};
   /// Only the axis that is deflected most counts, until another is so by a quarter more.

@@ -105,6 +105,7 @@ DragOptions random_options(Rng& rng) {
   options.curve = rng.chance(0.5) ? 0 : rng.uniform(0, 1);
   for (double& factor : options.sensitivity) factor = rng.uniform(-2, 2);
   for (auto& axis : options.source) axis = static_cast<std::uint8_t>(rng.integer(0, 5));
+  for (bool& inverted : options.inverted) inverted = rng.chance(0.5);
   return options;
 }
 

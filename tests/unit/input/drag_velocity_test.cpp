@@ -54,7 +54,8 @@ TEST(DragVelocity, TheCurveKeepsFullDeflectionFull) {
 TEST(DragVelocity, AxesAreChosenScaledAndInverted) {
   DragOptions options;
   options.source = {1, 0, 2, 3, 4, 4};
-  options.sensitivity = {1, -2, 0, 1, 1, 1};
+  options.sensitivity = {1, 2, 0, 1, 1, 1};
+  options.inverted[1] = true;
   DragVelocity drag(options);
   const Drag moved = drag.push(motion_of(0ms, {35, 70, 350, 0, 350, 0}));
   EXPECT_DOUBLE_EQ(moved.mm_per_s[0], 20);
