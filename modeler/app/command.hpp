@@ -8,6 +8,7 @@
 
 #include "drivers/transport/device_listing.hpp"
 #include "input/base/error.hpp"
+#include "input/stroke/drag_velocity.hpp"
 #include "modeler/app/output_format.hpp"
 
 namespace limn::app {
@@ -57,6 +58,7 @@ struct DescriptorArguments {
 
 struct DecodeArguments {
   TraceArguments trace;
+  DragOptions drag;  ///< of 3D mice
   OutputFormat format = OutputFormat::kText;
 };
 
@@ -78,6 +80,7 @@ struct LiveArguments {
 
 struct MonitorArguments {
   LiveArguments live;
+  DragOptions drag;    ///< of 3D mice
   double seconds = 0;  ///< 0: until a signal
   OutputFormat format = OutputFormat::kText;
 };
@@ -97,6 +100,7 @@ struct LinkArguments {
 
 struct ReplayArguments {
   TraceArguments trace;
+  DragOptions drag;  ///< of 3D mice
   double speed = 1;
   LinkArguments link;  ///< none: samples go to standard output
   OutputFormat format = OutputFormat::kText;

@@ -11,20 +11,20 @@ namespace limn::app {
 Outcome run_decode(const DecodeArguments& arguments) {
   auto reader = open_trace_input(arguments.trace);
   if (!reader) return tl::unexpected(std::move(reader.error()));
-  SampleText format(arguments.format, (*reader)->format() != TraceFormat::kStrokeCsv);
+  SampleText format(arguments.format, (*reader)->format() != TraceFormat::kStrokeCsv,
+                    arguments.drag);
   TraceDecoder decoder(std::move(*reader), {.salvage = arguments.trace.salvage});
 
   StandardOutput out;
   format.begin(out.text());
   for (;;) {
-    auto sample = decoder.next();
+    auto sample = decoder.next_any();
     if (!sample) {
       // What came before the damage stands; a document stays unended, as its reader should know.
       if (auto written = out.flush(); !written) return written;
       return in_file(arguments.trace.path, Expected<void>(tl::unexpected(sample.error())));
     }
-    if (*sample == nullptr) break;
-    format.append(**sample, out.text());
+    if (!format.append(*sample, out.text())) break;
     if (auto written = out.flush_if_large(); !written) return written;
   }
   format.end(out.text());

@@ -79,6 +79,46 @@ void add_live(CLI::App& command, LiveArguments& live) {
       "Read devices as they are, without the requests that set them up");
 }
 
+/// How 3D mice become velocities.
+void add_drag(CLI::App& command, DragOptions& drag) {
+  const auto option = [&command](const char* name, const char* type, auto parse,
+                                 const char* description) {
+    return add_value(command, name, parse, description)->type_name(type)->group("3D mice");
+  };
+  option(
+      "--mm-per-s", "V",
+      [&drag](const std::string& text) { return parse_full_speed(text, drag.mm_per_s); },
+      "Velocity at full deflection")
+      ->default_str("100");
+  option(
+      "--rad-per-s", "W",
+      [&drag](const std::string& text) { return parse_full_speed(text, drag.rad_per_s); },
+      "Angular velocity at full deflection")
+      ->default_str("1");
+  option(
+      "--dead-zone", "F",
+      [&drag](const std::string& text) { return parse_fraction(text, 0.9, drag.dead_zone); },
+      "Deflections up to this part of the full one count as none")
+      ->default_str("0");
+  option(
+      "--curve", "F",
+      [&drag](const std::string& text) { return parse_fraction(text, 1, drag.curve); },
+      "From 0, velocity proportional to deflection, to 1, to its cube")
+      ->default_str("0");
+  option(
+      "--sensitivity", "F[,F..]",
+      [&drag](const std::string& text) { return parse_factors(text, drag.sensitivity); },
+      "A factor of all six axes, or six")
+      ->default_str("1");
+  option(
+      "--axes", "LIST",
+      [&drag](const std::string& text) { return parse_axes(text, drag.source, drag.inverted); },
+      "Which axis of the device drives each of the six, - inverts it")
+      ->default_str("x,y,z,rx,ry,rz");
+  command.add_flag("--dominant", drag.dominant_axis, "Only the axis deflected most counts")
+      ->group("3D mice");
+}
+
 void add_seconds(CLI::App& command, double& seconds) {
   add_value(
       command, "--seconds",
@@ -121,9 +161,10 @@ int run(int argc, char** argv) {
   descriptor_command->callback([&] { outcome = run_descriptor(descriptor); });
 
   DecodeArguments decode;
-  CLI::App* decode_command =
-      app.add_subcommand("decode", "Print a recording's pen samples, one line a sample");
+  CLI::App* decode_command = app.add_subcommand(
+      "decode", "Print a recording's samples of pens and 3D mice, one line a sample");
   add_trace(*decode_command, decode.trace);
+  add_drag(*decode_command, decode.drag);
   add_format(*decode_command, decode.format);
   decode_command->callback([&] { outcome = run_decode(decode); });
 
@@ -145,6 +186,7 @@ int run(int argc, char** argv) {
       app.add_subcommand("monitor", "Watch devices: values, rate, jitter, lost reports, latency");
   add_live(*monitor_command, monitor.live);
   add_seconds(*monitor_command, monitor.seconds);
+  add_drag(*monitor_command, monitor.drag);
   add_format(*monitor_command, monitor.format);
   monitor_command->callback([&] { outcome = run_monitor(monitor); });
 
@@ -164,7 +206,7 @@ int run(int argc, char** argv) {
   ReplayArguments replay;
   CLI::App* replay_command = app.add_subcommand(
       "replay",
-      "Print a recording's pen samples at the times at which they were made, or be its device for "
+      "Print a recording's samples at the times at which they were made, or be its device for "
       "other programs");
   add_trace(*replay_command, replay.trace);
   add_value(
@@ -174,6 +216,7 @@ int run(int argc, char** argv) {
       ->type_name("X")
       ->default_str("1");
   add_link(*replay_command, replay.link);
+  add_drag(*replay_command, replay.drag);
   add_format(*replay_command, replay.format);
   replay_command->callback([&] { outcome = run_replay(replay); });
 

@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "drivers/devices/device_traits.hpp"
 #include "drivers/devices/trace_decoder.hpp"
 #include "drivers/transport/paced_reader.hpp"
+#include "input/stroke/drag_sampler.hpp"
 #include "modeler/app/command.hpp"
 #include "modeler/app/live_input.hpp"
 #include "modeler/app/report_timing.hpp"
@@ -33,8 +33,9 @@ struct Watched {
   StreamLosses losses;
   std::uint64_t repaired = 0;
   bool gone = false;
-  bool mouse = false;  // a 3D mouse: no samples yet
-  std::optional<PenSample> last;
+  std::optional<PenSample> pen;
+  std::optional<MotionSample> motion;
+  Drag drag;  // of that
 };
 
 /// Hands the events of live devices on, counts them, and calls for a picture now and then.
@@ -83,7 +84,6 @@ class WatchingReader final : public TraceReader {
     device.id = id;
     device.name = described.device->name;
     device.gone = false;
-    device.mouse = traits_of(*described.device).kind == DeviceKind::k3dMouse;
   }
   void count(const Report& report) { count(report.device, report.time); }
   void count(const EvdevFrame& frame) { count(frame.device, frame.time); }
@@ -119,12 +119,25 @@ std::string bars(const DurationStatistics& durations) {
   return text + '|';
 }
 
+std::string describe(const MotionSample& sample, const Drag& drag) {
+  char line[128];
+  std::snprintf(line, sizeof line, "%7.2f %7.2f %7.2f mm/s  %7.4f %7.4f %7.4f rad/s",
+                drag.mm_per_s[0], drag.mm_per_s[1], drag.mm_per_s[2], drag.rad_per_s[0],
+                drag.rad_per_s[1], drag.rad_per_s[2]);
+  std::string text = line;
+  sample.buttons.for_each(
+      [&text](unsigned number) { text += "  button " + std::to_string(number); });
+  return text;
+}
+
 std::string describe(const Watched& device) {
   char line[256];
   std::string text =
       device.id + " " + printable(device.name) + (device.gone ? " (gone)" : "") + "\n  ";
-  if (device.last) {
-    const PenSample& s = *device.last;
+  if (device.motion) {
+    text += describe(*device.motion, device.drag);
+  } else if (device.pen) {
+    const PenSample& s = *device.pen;
     std::snprintf(line, sizeof line, "%-16s x %8.3f  y %8.3f mm",
                   std::string(name(s.state)).c_str(), s.x_mm, s.y_mm);
     text += line;
@@ -133,7 +146,7 @@ std::string describe(const Watched& device) {
       text += line;
     }
   } else {
-    text += device.mouse ? "a 3D mouse" : "no pen yet";
+    text += "nothing yet";
   }
   const DurationStatistics& intervals = device.timing.intervals();
   std::snprintf(line, sizeof line,
@@ -217,12 +230,20 @@ Outcome run_monitor(const MonitorArguments& arguments) {
   WatchingReader& watched = *watching;
   TraceDecoder decoder(std::move(watching), {.salvage = true});
   decoding = &decoder;
+  DragSampler drags(arguments.drag);
   for (;;) {
-    auto sample = decoder.next();
+    auto sample = decoder.next_any();
     if (!sample) return in_file("", Expected<void>(tl::unexpected(sample.error())));
-    if (*sample == nullptr) break;
-    Watched& device = watched.devices[(*sample)->device];
-    device.last = **sample;
+    if (std::holds_alternative<std::monostate>(*sample)) break;
+    const auto* const pen = std::get_if<const PenSample*>(&*sample);
+    const auto* const motion = std::get_if<const MotionSample*>(&*sample);
+    Watched& device = watched.devices[pen != nullptr ? (*pen)->device : (*motion)->device];
+    if (pen != nullptr) {
+      device.pen = **pen;
+    } else {
+      device.motion = **motion;
+      device.drag = drags.push(**motion);
+    }
     if (watched.last_report) device.latency.add(monotonic_clock().now() - *watched.last_report);
   }
   show(watched.devices);

@@ -1,8 +1,11 @@
 #include "modeler/app/option_values.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <vector>
 
 #include "modeler/app/nearest_name.hpp"
 
@@ -19,6 +22,17 @@ bool read_all(std::string_view text, Number& number, Base... base) {
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, number, base...);
   return error == std::errc() && stop == end;
+}
+
+/// At commas.
+std::vector<std::string_view> split(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (;;) {
+    const auto comma = text.find(',');
+    words.push_back(text.substr(0, comma));
+    if (comma == std::string_view::npos) return words;
+    text.remove_prefix(comma + 1);
+  }
 }
 
 std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
@@ -69,6 +83,51 @@ std::string parse_seconds(std::string_view text, double& seconds) {
 std::string parse_speed(std::string_view text, double& speed) {
   if (read_all(text, speed) && std::isfinite(speed) && speed > 0) return {};
   return quoted(text) + " is no factor above 0, such as 2";
+}
+
+std::string parse_full_speed(std::string_view text, double& speed) {
+  constexpr double kFastest = 1e6;
+  if (read_all(text, speed) && speed > 0 && speed <= kFastest) return {};
+  return quoted(text) + " is no speed above 0, such as 100";
+}
+
+std::string parse_fraction(std::string_view text, double most, double& fraction) {
+  if (read_all(text, fraction) && fraction >= 0 && fraction <= most) return {};
+  char range[32];
+  std::snprintf(range, sizeof range, "%g", most);
+  return quoted(text) + " is no number from 0 to " + range;
+}
+
+std::string parse_factors(std::string_view text, std::array<double, 6>& factors) {
+  constexpr double kMost = 1e6;
+  const auto words = split(text);
+  std::array<double, 6> read{};
+  bool good = words.size() == 1 || words.size() == read.size();
+  for (std::size_t i = 0; good && i < read.size(); ++i) {
+    good = read_all(words[words.size() == 1 ? 0 : i], read[i]) && std::abs(read[i]) <= kMost;
+  }
+  if (!good) return quoted(text) + " is neither one factor nor six, such as 1,1,0.5,1,1,1";
+  factors = read;
+  return {};
+}
+
+std::string parse_axes(std::string_view text, std::array<std::uint8_t, 6>& source,
+                       std::array<bool, 6>& inverted) {
+  constexpr std::array<std::string_view, 6> kAxes = {"x", "y", "z", "rx", "ry", "rz"};
+  const auto words = split(text);
+  if (words.size() != kAxes.size()) {
+    return quoted(text) + " are not six axes, such as x,y,z,rx,ry,-rz";
+  }
+  for (std::size_t i = 0; i < kAxes.size(); ++i) {
+    std::string_view word = words[i];
+    inverted[i] = word.starts_with('-');
+    word.remove_prefix(inverted[i] ? 1 : 0);
+    const auto* const found = std::find(kAxes.begin(), kAxes.end(), word);
+    if (found == kAxes.end())
+      return "there is no axis " + quoted(word) + "; " + suggest(word, kAxes);
+    source[i] = static_cast<std::uint8_t>(found - kAxes.begin());
+  }
+  return {};
 }
 
 std::string parse_port(std::string_view text, std::uint16_t& port) {

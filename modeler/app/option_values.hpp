@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -29,6 +30,20 @@ std::string parse_seconds(std::string_view text, double& seconds);
 
 /// A finite factor above 0.
 std::string parse_speed(std::string_view text, double& speed);
+
+/// A finite speed above 0, in mm/s or rad/s: at most 10^6.
+std::string parse_full_speed(std::string_view text, double& speed);
+
+/// A number from 0 to `most`.
+std::string parse_fraction(std::string_view text, double most, double& fraction);
+
+/// Six numbers, or one for all six, separated by commas.
+std::string parse_factors(std::string_view text, std::array<double, 6>& factors);
+
+/// Six axes of a 3D mouse, "x,y,z,rx,ry,rz" in any order, perhaps repeated, each with a "-" before
+/// it where it is inverted: the device's axes that drive these.
+std::string parse_axes(std::string_view text, std::array<std::uint8_t, 6>& source,
+                       std::array<bool, 6>& inverted);
 
 /// A TCP port of 127.0.0.1, the only address that limn serves; 0 is any that is free.
 std::string parse_port(std::string_view text, std::uint16_t& port);

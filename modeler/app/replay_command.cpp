@@ -26,7 +26,8 @@ Outcome run_replay(const ReplayArguments& arguments) {
   auto reader = open_trace_input(arguments.trace);
   if (!reader) return tl::unexpected(std::move(reader.error()));
   if (arguments.link.wanted()) return replay_to_others(**reader, arguments);
-  SampleText format(arguments.format, (*reader)->format() != TraceFormat::kStrokeCsv);
+  SampleText format(arguments.format, (*reader)->format() != TraceFormat::kStrokeCsv,
+                    arguments.drag);
   TraceDecoder decoder(
       std::make_unique<PacedReader>(std::move(*reader), arguments.speed, monotonic_clock()),
       {.salvage = arguments.trace.salvage});
@@ -36,12 +37,11 @@ Outcome run_replay(const ReplayArguments& arguments) {
   for (;;) {
     // Each sample goes out before the next one is waited for.
     if (auto written = out.flush(); !written) return written;
-    auto sample = decoder.next();
+    auto sample = decoder.next_any();
     if (!sample) {
       return in_file(arguments.trace.path, Expected<void>(tl::unexpected(sample.error())));
     }
-    if (*sample == nullptr) break;
-    format.append(**sample, out.text());
+    if (!format.append(*sample, out.text())) break;
   }
   format.end(out.text());
   if (auto written = out.flush(); !written) return written;

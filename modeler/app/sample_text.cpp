@@ -62,11 +62,146 @@ void for_buttons(const PenSample& sample, Each each) {
 
 /// Calls `each(name)` for every disturbance.
 template <class Each>
-void for_disturbances(const PenSample& sample, Each each) {
+void for_disturbances(Disturbances disturbances, Each each) {
   for (unsigned i = 0; i < kDisturbanceCount; ++i) {
     const auto one = static_cast<Disturbance>(1U << i);
-    if (sample.disturbances.has(one)) each(name(one));
+    if (disturbances.has(one)) each(name(one));
   }
+}
+
+/// What of a sample says how its stream was disturbed before it, in each format.
+template <class Sample>
+void append_json_loss(const Sample& sample, std::string& out) {
+  if (sample.lost_estimated) out += ",\"lost_estimated\":true";
+  if (sample.disturbances.empty()) return;
+  std::string_view separator = ",\"disturbances\":[\"";
+  for_disturbances(sample.disturbances, [&](std::string_view disturbance) {
+    out += separator;
+    out += disturbance;
+    separator = "\",\"";
+  });
+  out += "\"]";
+}
+
+template <class Sample>
+void append_csv_loss(const Sample& sample, std::string& out) {
+  out += sample.lost_estimated ? ",true," : ",,";
+  bool first = true;
+  for_disturbances(sample.disturbances, [&](std::string_view disturbance) {
+    if (!first) out += ' ';
+    out += disturbance;
+    first = false;
+  });
+}
+
+template <class Sample>
+void append_line_loss(const Sample& sample, std::string& out) {
+  if (sample.lost > 0) {
+    out += sample.lost_estimated ? " lost>=" : " lost ";
+    append_number(sample.lost, out);
+  }
+  for_disturbances(sample.disturbances, [&](std::string_view disturbance) {
+    out += " !";
+    out += disturbance;
+  });
+}
+
+/// "[1,2,3]"
+template <class Numbers>
+void append_json_array(const Numbers& numbers, std::string& out) {
+  char separator = '[';
+  for (const auto number : numbers) {
+    out += separator;
+    append_number(number, out);
+    separator = ',';
+  }
+  out += ']';
+}
+
+constexpr std::string_view kMouse = "3d_mouse";
+constexpr std::size_t kMotionCells = 13;  // columns that only 3D mice have
+
+void append_json(const MotionSample& sample, const Drag& drag, std::string& out) {
+  out += "{\"t\":";
+  append_seconds(sample.time, out);
+  out += ",\"device\":";
+  append_number(sample.device, out);
+  out += ",\"motion\":{\"mm_per_s\":";
+  append_json_array(drag.mm_per_s, out);
+  out += ",\"rad_per_s\":";
+  append_json_array(drag.rad_per_s, out);
+  out += "},\"buttons\":[";
+  bool first = true;
+  sample.buttons.for_each([&](unsigned number) {
+    if (!first) out += ',';
+    append_number(number, out);
+    first = false;
+  });
+  out += "],\"raw\":";
+  append_json_array(sample.raw, out);
+  if (sample.battery_percent) {
+    out += ",\"battery_percent\":";
+    append_number(static_cast<unsigned>(*sample.battery_percent), out);
+  }
+  if (sample.silence) out += ",\"silence\":true";
+  if (sample.lost > 0) {
+    out += ",\"lost\":";
+    append_number(sample.lost, out);
+  }
+  append_json_loss(sample, out);
+  out += '}';
+}
+
+void append_csv(const MotionSample& sample, const Drag& drag, std::string& out) {
+  const auto cell = [&out](auto value) {
+    out += ',';
+    append_number(value, out);
+  };
+  append_seconds(sample.time, out);
+  cell(sample.device);
+  out += ',';
+  out += kMouse;
+  out += drag.at_rest ? ",at_rest" : ",moving";
+  out += ",,,,,,,,";  // x_mm to distance
+  bool first = true;
+  sample.buttons.for_each([&](unsigned number) {
+    if (!first) out += ' ';
+    append_number(number, out);
+    first = false;
+  });
+  out += ',';  // serial
+  cell(sample.lost);
+  out += ",,,";  // raw.x to raw.pressure
+  append_csv_loss(sample, out);
+  for (const double value : drag.mm_per_s) cell(value);
+  for (const double value : drag.rad_per_s) cell(value);
+  for (const std::int32_t count : sample.raw) cell(count);
+  out += ',';
+  if (sample.battery_percent) append_number(static_cast<unsigned>(*sample.battery_percent), out);
+  out += '\n';
+}
+
+void append_line(const MotionSample& sample, const Drag& drag, std::string& out) {
+  std::array<char, 160> text;
+  const auto& v = drag.mm_per_s;
+  const auto& w = drag.rad_per_s;
+  const int length =
+      std::snprintf(text.data(), text.size(),
+                    "%10.6f %4u %-12s %-8s %9.3f %9.3f %9.3f mm/s  %8.5f %8.5f %8.5f rad/s",
+                    to_seconds(sample.time), sample.device, kMouse.data(),
+                    drag.at_rest ? "at_rest" : "moving", v[0], v[1], v[2], w[0], w[1], w[2]);
+  out.append(text.data(), std::min(static_cast<std::size_t>(length), text.size() - 1));
+  sample.buttons.for_each([&out](unsigned number) {
+    out += " button";
+    append_number(number, out);
+  });
+  if (sample.battery_percent) {
+    out += " battery ";
+    append_number(static_cast<unsigned>(*sample.battery_percent), out);
+    out += " %";
+  }
+  append_line_loss(sample, out);
+  out += '\n';
 }
 
 }  // namespace
@@ -86,7 +221,9 @@ void SampleText::begin(std::string& out) const {
     case OutputFormat::kCsv:
       out +=
           "t,device,tool,state,x_mm,y_mm,pressure,tilt_x_deg,tilt_y_deg,twist_deg,distance,"
-          "buttons,serial,lost,raw.x,raw.y,raw.pressure,lost_estimated,disturbances\n";
+          "buttons,serial,lost,raw.x,raw.y,raw.pressure,lost_estimated,disturbances,"
+          "mm_per_s.x,mm_per_s.y,mm_per_s.z,rad_per_s.x,rad_per_s.y,rad_per_s.z,"
+          "raw.1,raw.2,raw.3,raw.4,raw.5,raw.6,battery_percent\n";
       break;
   }
 }
@@ -95,24 +232,53 @@ void SampleText::end(std::string& out) const {
   if (format_ == OutputFormat::kJson) out += first_ ? "]\n" : "\n]\n";
 }
 
-void SampleText::append(const PenSample& sample, std::string& out) {
-  switch (format_) {
-    case OutputFormat::kText:
-      append_line(sample, out);
-      break;
-    case OutputFormat::kJson:
-      out += first_ ? "\n" : ",\n";
-      append_json(sample, out);
-      break;
-    case OutputFormat::kJsonl:
-      append_json(sample, out);
-      out += '\n';
-      break;
-    case OutputFormat::kCsv:
-      append_csv(sample, out);
-      break;
-  }
+/// `append()` writes the sample itself.
+template <class Append>
+void SampleText::append_one(std::string& out, Append append) {
+  if (format_ == OutputFormat::kJson) out += first_ ? "\n" : ",\n";
+  append();
+  if (format_ == OutputFormat::kJsonl) out += '\n';
   first_ = false;
+}
+
+void SampleText::append(const PenSample& sample, std::string& out) {
+  append_one(out, [&] {
+    switch (format_) {
+      case OutputFormat::kText:
+        return append_line(sample, out);
+      case OutputFormat::kCsv:
+        return append_csv(sample, out);
+      case OutputFormat::kJson:
+      case OutputFormat::kJsonl:
+        return append_json(sample, out);
+    }
+  });
+}
+
+bool SampleText::append(const AnySample& sample, std::string& out) {
+  if (const auto* const pen = std::get_if<const PenSample*>(&sample)) {
+    append(**pen, out);
+  } else if (const auto* const motion = std::get_if<const MotionSample*>(&sample)) {
+    append(**motion, out);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void SampleText::append(const MotionSample& sample, std::string& out) {
+  const Drag drag = drags_.push(sample);
+  append_one(out, [&] {
+    switch (format_) {
+      case OutputFormat::kText:
+        return app::append_line(sample, drag, out);
+      case OutputFormat::kCsv:
+        return app::append_csv(sample, drag, out);
+      case OutputFormat::kJson:
+      case OutputFormat::kJsonl:
+        return app::append_json(sample, drag, out);
+    }
+  });
 }
 
 void SampleText::append_json(const PenSample& sample, std::string& out) const {
@@ -155,16 +321,7 @@ void SampleText::append_json(const PenSample& sample, std::string& out) const {
   }
   out += ",\"lost\":";
   append_number(sample.lost, out);
-  if (sample.lost_estimated) out += ",\"lost_estimated\":true";
-  if (!sample.disturbances.empty()) {
-    std::string_view separator = ",\"disturbances\":[\"";
-    for_disturbances(sample, [&](std::string_view disturbance) {
-      out += separator;
-      out += disturbance;
-      separator = "\",\"";
-    });
-    out += "\"]";
-  }
+  append_json_loss(sample, out);
   if (with_raw_ && (axes.has_position() || axes.has(PenAxis::kPressure))) {
     std::string_view separator = ",\"raw\":{";
     const auto count = [&](PenAxis axis, std::string_view key, std::int32_t value) {
@@ -216,13 +373,8 @@ void SampleText::append_csv(const PenSample& sample, std::string& out) const {
   cell(with_raw_ && axes.has(PenAxis::kX), sample.raw.x);
   cell(with_raw_ && axes.has(PenAxis::kY), sample.raw.y);
   cell(with_raw_ && axes.has(PenAxis::kPressure), sample.raw.pressure);
-  out += sample.lost_estimated ? ",true," : ",,";
-  first = true;
-  for_disturbances(sample, [&](std::string_view disturbance) {
-    if (!first) out += ' ';
-    out += disturbance;
-    first = false;
-  });
+  append_csv_loss(sample, out);
+  out.append(kMotionCells, ',');
   out += '\n';
 }
 
@@ -249,14 +401,7 @@ void SampleText::append_line(const PenSample& sample, std::string& out) const {
     out += ' ';
     out += button;
   });
-  if (sample.lost > 0) {
-    append(std::snprintf(text.data(), text.size(), sample.lost_estimated ? " lost>=%u" : " lost %u",
-                         sample.lost));
-  }
-  for_disturbances(sample, [&](std::string_view disturbance) {
-    out += " !";
-    out += disturbance;
-  });
+  append_line_loss(sample, out);
   out += '\n';
 }
 
