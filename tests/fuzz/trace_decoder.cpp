@@ -15,10 +15,12 @@
 #include "drivers/devices/trace_decoder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "input/stroke/drag_sampler.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/pen_laws.hpp"
 
@@ -26,7 +28,8 @@ namespace {
 
 using namespace limn;
 
-constexpr std::array<std::uint16_t, 7> kAxes = {0x00, 0x01, 0x18, 0x19, 0x1A, 0x1B, 0x02};
+constexpr std::array<std::uint16_t, 10> kAxes = {0x00, 0x01, 0x18, 0x19, 0x1A,
+                                                 0x1B, 0x02, 0x03, 0x04, 0x05};
 
 class FuzzedReader final : public TraceReader {
  public:
@@ -160,39 +163,62 @@ struct Seen {
   bool any = false;
 };
 
+/// What holds of every sample in its stream; gives what is lost before it.
+template <class Sample>
+std::uint64_t check_stream(const Sample& s, Seen& seen) {
+  fuzz::require(!seen.any || s.time >= seen.last || s.disturbances.has(Disturbance::kClockJump),
+                "time goes back only with a clock jump");
+  fuzz::require(s.lost == 0 || s.disturbances.has(Disturbance::kOverrun) ||
+                    s.disturbances.has(Disturbance::kGap) ||
+                    s.disturbances.has(Disturbance::kDamage),
+                "what is lost has a cause");
+  fuzz::require(!s.lost_estimated || s.lost > 0 || s.disturbances.has(Disturbance::kOverrun),
+                "an estimate is of something, or of a queue that was full");
+  seen.last = s.time;
+  seen.any = true;
+  return s.lost;
+}
+
+void check_motion(const MotionSample& sample, const Drag& drag) {
+  fuzz::require(!sample.silence || sample.is_zero(), "silence is rest");
+  for (std::size_t i = 0; i < 3; ++i) {
+    fuzz::require(std::isfinite(drag.mm_per_s[i]) && std::isfinite(drag.rad_per_s[i]) &&
+                      std::isfinite(drag.mm[i]) && std::isfinite(drag.rad[i]),
+                  "drags are finite");
+    fuzz::require(!sample.silence || (drag.mm_per_s[i] == 0 && drag.rad_per_s[i] == 0),
+                  "nothing moves in silence");
+  }
+}
+
 void decode(std::span<const std::uint8_t> bytes, bool salvage) {
   TraceDecoder decoder(std::make_unique<FuzzedReader>(bytes), {.salvage = salvage});
   std::map<DeviceIndex, Seen> devices;
+  DragSampler drags;
   std::uint64_t samples = 0;
   std::uint64_t lost = 0;
   // A byte is at most an event, an event at most a full output.
   std::uint64_t left = (bytes.size() + 2) * 2 * PenOutput::kCapacity;
   for (;;) {
     fuzz::require(left-- > 0, "a stream ends");
-    const auto sample = decoder.next();
+    const auto sample = decoder.next_any();
     if (!sample) {
-      const auto again = decoder.next();
+      const auto again = decoder.next_any();
       fuzz::require(!again && again.error().what == sample.error().what, "an error stays");
       fuzz::require(!sample.error().what.empty() && !sample.error().remedy.empty(),
                     "an error says what is wrong and to do");
       break;
     }
-    if (*sample == nullptr) break;
-    const PenSample& s = **sample;
-    Seen& seen = devices[s.device];
-    seen.laws.check({&s, 1});
-    fuzz::require(!seen.any || s.time >= seen.last || s.disturbances.has(Disturbance::kClockJump),
-                  "time goes back only with a clock jump");
-    fuzz::require(s.lost == 0 || s.disturbances.has(Disturbance::kOverrun) ||
-                      s.disturbances.has(Disturbance::kGap) ||
-                      s.disturbances.has(Disturbance::kDamage),
-                  "what is lost has a cause");
-    fuzz::require(!s.lost_estimated || s.lost > 0 || s.disturbances.has(Disturbance::kOverrun),
-                  "an estimate is of something, or of a queue that was full");
-    seen.last = s.time;
-    seen.any = true;
-    lost += s.lost;
+    if (std::holds_alternative<std::monostate>(*sample)) break;
     ++samples;
+    if (const auto* const pen = std::get_if<const PenSample*>(&*sample)) {
+      Seen& seen = devices[(*pen)->device];
+      seen.laws.check({*pen, 1});
+      lost += check_stream(**pen, seen);
+    } else {
+      const MotionSample& motion = *std::get<const MotionSample*>(*sample);
+      lost += check_stream(motion, devices[motion.device]);
+      check_motion(motion, drags.push(motion));
+    }
   }
   const TraceSummary summary = decoder.summary();
   fuzz::require(summary.samples == samples, "every sample is counted");

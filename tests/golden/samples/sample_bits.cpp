@@ -23,6 +23,7 @@
 #include <thread>
 #include <vector>
 
+#include "drivers/devices/motion_decoder.hpp"
 #include "drivers/devices/pen_decoder.hpp"
 #include "drivers/devices/trace_decoder.hpp"
 #include "drivers/transport/paced_reader.hpp"
@@ -39,7 +40,8 @@ namespace fs = std::filesystem;
 /// Samples and their hash, each device by itself: between devices a replay may have another order.
 class Hash {
  public:
-  void add(const PenSample& sample) {
+  template <class Sample>
+  void add(const Sample& sample) {
     ++samples_;
     std::uint64_t& hash = devices_.try_emplace(sample.device, kEmptySampleHash).first->second;
     hash = hash_sample(sample, hash);
@@ -110,9 +112,13 @@ Hash decode(std::string_view recording, Ids ids, Way way) {
   if (way.speed > 0) paced = std::make_unique<PacedReader>(std::move(paced), way.speed, clock);
   TraceDecoder decoder(std::move(paced), {.salvage = true});
   for (;;) {
-    const auto sample = decoder.next();
-    if (!sample || *sample == nullptr) return hash;
-    hash.add(**sample);
+    const auto sample = decoder.next_any();
+    if (!sample || std::holds_alternative<std::monostate>(*sample)) return hash;
+    if (const auto* const pen = std::get_if<const PenSample*>(&*sample)) {
+      hash.add(**pen);
+    } else {
+      hash.add(*std::get<const MotionSample*>(*sample));
+    }
   }
 }
 
@@ -133,16 +139,49 @@ std::string simulated(const firmware::Drawing& drawing) {
   return std::string(sink.text());
 }
 
-/// Reports of invented bytes to a decoder of every row of `family`.
-Hash decode_rows(PenFamily family) {
-  std::uint64_t state = 0x9E3779B97F4A7C15U + static_cast<std::uint64_t>(family);
-  const auto byte = [&state] {  // splitmix64
-    state += 0x9E3779B97F4A7C15U;
-    std::uint64_t z = state;
+/// Invented bytes: splitmix64.
+class Bytes {
+ public:
+  explicit Bytes(std::uint64_t seed) : state_(kStep + seed) {}
+  std::uint8_t operator()() {
+    state_ += kStep;
+    std::uint64_t z = state_;
     z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9U;
     z = (z ^ z >> 27) * 0x94D049BB133111EBU;
     return static_cast<std::uint8_t>(z >> 56);
-  };
+  }
+
+ private:
+  static constexpr std::uint64_t kStep = 0x9E3779B97F4A7C15U;
+  std::uint64_t state_;
+};
+
+/// Reports of invented bytes to a decoder of every row of 3D mice.
+Hash decode_3d_mice() {
+  Bytes byte(1000);
+  Hash hash;
+  DeviceIndex index = 0;
+  for (const MotionSpec& row : motion_specs()) {
+    auto decoder = MotionDecoder::make(row.vendor, row.product, {});
+    if (!decoder) continue;
+    std::array<std::uint8_t, 16> report{};
+    for (int i = 0; i < 400; ++i) {
+      constexpr std::array<std::uint8_t, 8> kIds = {1, 2, 1, 2, 3, 0x17, 0x1C, 9};
+      for (std::uint8_t& b : report) b = byte();
+      report[0] = kIds[byte() % kIds.size()];
+      const std::size_t length = std::array<std::size_t, 4>{3, 7, 13, 16}[byte() % 4U];
+      const Timestamp time = std::chrono::milliseconds(i * 8 + (i / 50) * 200);
+      const Report made{index, time, std::span(report).first(length)};
+      for (const MotionSample& sample : decoder->decode(made).samples) hash.add(sample);
+    }
+    ++index;
+  }
+  return hash;
+}
+
+/// Reports of invented bytes to a decoder of every row of `family`.
+Hash decode_rows(PenFamily family) {
+  Bytes byte(static_cast<std::uint64_t>(family));
   Hash hash;
   DeviceIndex index = 0;
   for (const PenSpec& row : pen_specs()) {
@@ -229,6 +268,7 @@ std::vector<Case> all_cases(const fs::path& shared) {
     std::replace(label.begin(), label.end(), ' ', '_');
     cases.push_back({"rows/" + label, [family](Way) { return decode_rows(family); }});
   }
+  cases.push_back({"rows/3D_mice", [](Way) { return decode_3d_mice(); }});
   if (shared.empty() || !fs::exists(shared / "traces/README.md")) {
     std::printf("real recordings are absent (%s): only the simulated pen and the tables' rows\n",
                 (shared / "traces").string().c_str());
