@@ -61,9 +61,10 @@ TEST(Decode, CsvHasTheSameNamesAsColumns) {
   EXPECT_THAT(run.out,
               StartsWith("t,device,tool,state,x_mm,y_mm,pressure,tilt_x_deg,tilt_y_deg,twist_deg,"
                          "distance,buttons,serial,lost,raw.x,raw.y,raw.pressure,lost_estimated,"
-                         "disturbances\n"
-                         "0,0,pen,in_range,10,20,,,,,,,,0,100,200,,,\n"
-                         "0.01,0,pen,in_contact,10,20,,,,,,,,0,100,200,,,\n"));
+                         "disturbances,mm_per_s.x,mm_per_s.y,mm_per_s.z,rad_per_s.x,rad_per_s.y,"
+                         "rad_per_s.z,raw.1,raw.2,raw.3,raw.4,raw.5,raw.6,battery_percent\n"
+                         "0,0,pen,in_range,10,20,,,,,,,,0,100,200,,,,,,,,,,,,,,,,\n"
+                         "0.01,0,pen,in_contact,10,20,,,,,,,,0,100,200,,,,,,,,,,,,,,,,\n"));
 }
 
 TEST(Decode, DisturbancesAreFieldsOfTheNextSampleAndCounted) {
@@ -83,7 +84,7 @@ TEST(Decode, DisturbancesAreFieldsOfTheNextSampleAndCounted) {
   EXPECT_EQ(lines.err,
             "2 samples, at least 64 lost, 1 queue overrun, 1 repaired state transition\n");
   const CommandRun csv = run_limn({"decode", "-", "--format", "csv"}, recording);
-  EXPECT_THAT(csv.out, HasSubstr(",true,overrun repaired\n"));
+  EXPECT_THAT(csv.out, HasSubstr(",true,overrun repaired,"));
   const CommandRun text = run_limn({"decode", "-"}, recording);
   EXPECT_THAT(text.out, HasSubstr(" lost>=64 !overrun !repaired\n"));
 }
@@ -92,6 +93,84 @@ TEST(Decode, TextIsOneLineASample) {
   const CommandRun run = run_limn({"decode", "-"}, small_pen_line());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 15) << "a heading and 14 samples";
+}
+
+/// A SpaceNavigator: pushed to the right and twisted, a button, the battery of another, silence.
+constexpr const char* k3dMice =
+    "D: 0\nN: navigator\nI: 3 046d c626\nD: 1\nN: wireless\nI: 3 256f c62e\n"
+    "D: 0\nE: 1.000000 7 01 5e 01 af 00 00 00\nE: 1.008000 7 02 00 00 00 00 51 ff\n"
+    "E: 1.016000 3 03 02 00\n"
+    "D: 1\nE: 1.020000 3 17 54 01\n";
+
+TEST(Decode, A3dMouseHasVelocitiesButtonsAndCounts) {
+  const CommandRun run = run_limn({"decode", "-", "--format", "jsonl"}, k3dMice);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto samples = parse_lines(run.out);
+  ASSERT_EQ(samples.size(), 5U);
+  EXPECT_EQ(samples[0],
+            (json{{"t", 0},
+                  {"device", 0},
+                  {"motion", {{"mm_per_s", {100.0, -50.0, 0.0}}, {"rad_per_s", {0.0, 0.0, 0.0}}}},
+                  {"buttons", json::array()},
+                  {"raw", {350, 175, 0, 0, 0, 0}}}));
+  EXPECT_EQ(samples[1]["motion"]["rad_per_s"], (json{0.0, 0.0, 0.5}));
+  EXPECT_EQ(samples[2]["buttons"], json::array({2}));
+  EXPECT_EQ(samples[3]["battery_percent"], 84);
+  EXPECT_EQ(samples[3]["device"], 1);
+  EXPECT_EQ(samples[4]["silence"], true);
+  EXPECT_EQ(samples[4]["t"], 0.108);
+  EXPECT_EQ(samples[4]["motion"]["mm_per_s"], (json{0.0, 0.0, 0.0}));
+  EXPECT_EQ(samples[4]["disturbances"], json::array({"gap"}));
+  EXPECT_EQ(run.err, "5 samples, at least 1 lost, 1 gap\n");
+}
+
+TEST(Decode, A3dMouseInTextAndCsv) {
+  const CommandRun text = run_limn({"decode", "-"}, k3dMice);
+  EXPECT_THAT(text.out, HasSubstr("  0.008000    0 3d_mouse     moving     100.000   -50.000     "
+                                  "0.000 mm/s   0.00000  0.00000  0.50000 rad/s\n"));
+  EXPECT_THAT(text.out, HasSubstr(" rad/s button2\n"));
+  EXPECT_THAT(text.out, HasSubstr(" rad/s battery 84 %\n"));
+  const CommandRun csv = run_limn({"decode", "-", "--format", "csv"}, k3dMice);
+  EXPECT_THAT(csv.out, HasSubstr("\n0.016,0,3d_mouse,moving,,,,,,,,2,,0,,,,,,100,-50,0,0,0,0.5,350,"
+                                 "175,0,0,0,-175,\n"));
+  EXPECT_THAT(csv.out, HasSubstr(",0,0,0,0,0,0,84\n"));
+  const std::string header = csv.out.substr(0, csv.out.find('\n'));
+  std::istringstream rows(csv.out);
+  for (std::string row; std::getline(rows, row);) {
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','),
+              std::count(header.begin(), header.end(), ','))
+        << row;
+  }
+}
+
+TEST(Decode, TheHandOn3dMiceIsAnOption) {
+  const auto first_of = [](std::vector<std::string> options) {
+    options.insert(options.begin(), {"decode", "-", "--format", "jsonl"});
+    const CommandRun run = run_limn(options, k3dMice);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return parse_lines(run.out).at(0)["motion"]["mm_per_s"];
+  };
+  EXPECT_EQ(first_of({"--mm-per-s", "200"}), (json{200.0, -100.0, 0.0}));
+  EXPECT_EQ(first_of({"--dead-zone", "0.5"}), (json{100.0, 0.0, 0.0}));
+  EXPECT_EQ(first_of({"--curve", "1"}), (json{100.0, -12.5, 0.0}));
+  EXPECT_EQ(first_of({"--axes", "-y,x,x,rx,ry,rz"}), (json{50.0, 100.0, 100.0}));
+  EXPECT_EQ(first_of({"--sensitivity", "1,2,0,1,1,1"}), (json{100.0, -100.0, 0.0}));
+  EXPECT_EQ(first_of({"--dominant"}), (json{100.0, 0.0, 0.0}));
+}
+
+TEST(Decode, WrongOptionsOf3dMiceSayWhatIsRight) {
+  const auto refused = [](const std::string& option, const std::string& value) {
+    const CommandRun run = run_limn({"decode", "-", option, value}, k3dMice);
+    EXPECT_EQ(run.exit_code, 2);
+    return run.err;
+  };
+  EXPECT_THAT(refused("--mm-per-s", "0"), HasSubstr("'0' is no speed above 0, such as 100"));
+  EXPECT_THAT(refused("--rad-per-s", "1e9"), HasSubstr("is no speed above 0"));
+  EXPECT_THAT(refused("--dead-zone", "1"), HasSubstr("'1' is no number from 0 to 0.9"));
+  EXPECT_THAT(refused("--curve", "nan"), HasSubstr("is no number from 0 to 1"));
+  EXPECT_THAT(refused("--sensitivity", "1,2"), HasSubstr("is neither one factor nor six"));
+  EXPECT_THAT(refused("--axes", "x,y"), HasSubstr("are not six axes, such as x,y,z,rx,ry,-rz"));
+  EXPECT_THAT(refused("--axes", "x,y,z,rx,ry,r"), HasSubstr("there is no axis 'r'; did you mean"));
 }
 
 TEST(Decode, ARecordingWithoutSamplesIsAnEmptyArray) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "drivers/devices/trace_decoder.hpp"
 #include "drivers/hid/descriptor_parser.hpp"
 #include "drivers/hid/field_reader.hpp"
 #include "firmware_sim/devices/catalogue.hpp"
@@ -14,6 +15,7 @@
 #include "firmware_sim/devices/space_mouse.hpp"
 #include "firmware_sim/devices/space_navigator.hpp"
 #include "firmware_sim/usb/usb_device.hpp"
+#include "input/stroke/drag_velocity.hpp"
 #include "tests/unit/firmware_sim/recording_host.hpp"
 
 namespace limn::firmware {
@@ -212,6 +214,55 @@ TEST(KnobHand, MovesSmoothlyFromRestToRest) {
       before = pose;
     }
     EXPECT_EQ(hand.pose(hand.duration()).deflection, Deflection{}) << info.name;
+  }
+}
+
+/// Where a hand's deflections lead at 100 mm/s and 1 rad/s, in limn's frame.
+std::array<double, kKnobAxes> way_of(const KnobHand& hand) {
+  std::array<double, kKnobAxes> way{};
+  constexpr auto kStep = 100us;
+  for (auto time = 0us; time < hand.duration(); time += kStep) {
+    for (std::size_t i = 0; i < kKnobAxes; ++i) {
+      way[i] += hand.pose(time).deflection[i] * 1e-4 * (i < 3 ? 100 : 1);
+    }
+  }
+  return {way[0], -way[1], -way[2], way[3], -way[4], -way[5]};
+}
+
+TEST(KnobDrags, WhatLimnMakesOfTheReportsGoesWhereTheHandWent) {
+  for (const char* name : {"spacenavigator", "spacemouse"}) {
+    for (const MotionInfo& info : motions()) {
+      SCOPED_TRACE(std::string(name) + ", " + std::string(info.name));
+      const auto made = make_simulated_device(name, info.name, 1);
+      ASSERT_TRUE(made);
+      RecordingHost host(made->bus());
+      const KnobHand hand(*find_motion(info.name), 1);
+      host.run(hand.duration() + 200ms);
+      limn::TraceDecoder decoder(*open_trace(memory_bytes(host.trace())));
+      DragVelocity drag;
+      std::array<double, kKnobAxes> way{};
+      Drag last;
+      std::uint64_t lost = 0;
+      for (;;) {
+        const auto sample = decoder.next_any();
+        ASSERT_TRUE(sample) << sample.error().what;
+        const auto* const motion = std::get_if<const MotionSample*>(&*sample);
+        if (motion == nullptr) break;
+        last = drag.push(**motion);
+        lost += (*motion)->lost;
+        for (std::size_t i = 0; i < 3; ++i) {
+          way[i] += last.mm[i];
+          way[3 + i] += last.rad[i];
+        }
+      }
+      EXPECT_TRUE(last.at_rest);
+      EXPECT_EQ(last.mm_per_s, (std::array<double, 3>{}));
+      EXPECT_EQ(lost, 0U);
+      const auto expected = way_of(hand);
+      for (std::size_t i = 0; i < kKnobAxes; ++i) {
+        EXPECT_NEAR(way[i], expected[i], i < 3 ? 0.2 : 0.002) << "axis " << i;
+      }
+    }
   }
 }
 
