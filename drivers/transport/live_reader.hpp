@@ -49,6 +49,11 @@ class LiveReader final : public TraceReader {
 
   std::string place() const override;
 
+  /// What is asked of a device while it is streamed, as Transport::open_control(): the device that
+  /// is there now; when it comes back, open it again. From any thread while this lives. Errors:
+  /// kMissing: it is away, or is read in a way that asks nothing; kIo: no permission.
+  Expected<std::unique_ptr<DeviceControl>> open_control(DeviceIndex device);
+
   /// Ends the stream: next() gives what has come and then TraceEnd. From any thread or signal
   /// handler.
   void stop() noexcept;
