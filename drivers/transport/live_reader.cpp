@@ -16,6 +16,7 @@
 
 #include "drivers/transport/file_handle.hpp"
 #include "drivers/transport/paced_reader.hpp"
+#include "drivers/transport/transport_closer.hpp"
 #include "input/base/record_ring.hpp"
 
 namespace limn {
@@ -78,6 +79,7 @@ class LiveReader::Reading {
     hotplug_ = std::move(hotplug);
     for (auto& device : devices) add(std::move(device));
     try {
+      closer_.start();
       thread_ = std::thread([this] { run(); });
     } catch (const std::system_error& error) {
       return fail(ErrorCode::kIo, "", std::string("no thread: ") + error.what(),
@@ -182,7 +184,7 @@ class LiveReader::Reading {
       const std::lock_guard lock(devices_mutex_);
       gone = std::move(slot.transport);
     }
-    gone.reset();
+    closer_.close(std::move(gone));
     if (slot.owes_loss()) push_control(take_loss(index));
     push_control({RecordKind::kGone, index, monotonic_clock().now().count()});
   }
@@ -280,6 +282,7 @@ class LiveReader::Reading {
   std::mutex devices_mutex_;
   std::vector<Slot> slots_;
   std::unique_ptr<Hotplug> hotplug_;
+  TransportCloser closer_;
   std::atomic<bool> stopping_ = false;
   std::atomic<bool> closed_ = false;
   std::atomic<bool> in_round_ = false;

@@ -14,7 +14,8 @@ namespace limn {
 ///
 /// One thread sleeps in poll over all devices and drains whichever has something into one lock-free
 /// ring; next() takes events out of it in the caller's thread. From a report's bytes to its event
-/// nothing is allocated. When the caller is slow and the ring is full, reports are dropped,
+/// nothing is allocated. A second thread closes devices that have gone, which may take a dead one a
+/// second. When the caller is slow and the ring is full, reports are dropped,
 /// counted, and told by a note "lost N" before the next one. Notes, as hid-recorder files keep
 /// them:
 ///
