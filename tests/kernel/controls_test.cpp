@@ -223,7 +223,7 @@ TEST_F(KernelControls, ASilentDeviceRunsOutOfTimeAndIsStreamedOn) {
   const auto told = control->set_output(kLightOn);
   ASSERT_FALSE(told);
   EXPECT_EQ(told.error().what, "cannot be told: Connection timed out");
-  one.mouse.be_silent(false);  // to Linux, which asks when it has it back
+  one.mouse.be_silent(false);              // to Linux, which asks when it has it back
   constexpr std::size_t kMeanwhile = 125;  // a request's longest time of 1 s, a report each 8 ms
   Streamed streamed;
   while (streamed.reports[0].size() < kMeanwhile) streamed.take(*reader);
