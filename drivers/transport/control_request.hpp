@@ -27,10 +27,14 @@ constexpr ControlRequest get_feature_request(std::uint8_t id, std::uint8_t inter
   return {0xA1, 1, static_cast<std::uint16_t>(3 << 8 | id), interface};
 }
 
-/// The data of set_feature_request() for a report whose first byte is its ID: an ID of 0 stands for
-/// no ID, and does not travel. Precondition: `report` is not empty.
-constexpr std::span<const std::uint8_t> feature_data(
-    std::span<const std::uint8_t> report) noexcept {
+/// SET_REPORT of an output report.
+constexpr ControlRequest set_output_request(std::uint8_t id, std::uint8_t interface) noexcept {
+  return {0x21, 9, static_cast<std::uint16_t>(2 << 8 | id), interface};
+}
+
+/// The data of SET_REPORT for a report whose first byte is its ID: an ID of 0 stands for no ID, and
+/// does not travel. Precondition: `report` is not empty.
+constexpr std::span<const std::uint8_t> report_data(std::span<const std::uint8_t> report) noexcept {
   return report.subspan(report[0] == 0 ? 1 : 0);
 }
 

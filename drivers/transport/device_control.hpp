@@ -34,6 +34,10 @@ class DeviceControl {
   virtual Expected<void> write_interrupt(std::uint8_t endpoint,
                                          std::span<const std::uint8_t> bytes) = 0;
 
+  /// An output report, its ID the first byte (0 where reports are not numbered), such as 04 01, the
+  /// light of a 3D mouse. Over USB: SET_REPORT; hidraw: as Linux's driver sends them.
+  virtual Expected<void> set_output(std::span<const std::uint8_t> bytes) = 0;
+
   /// A feature report, its ID the first byte (0 where reports are not numbered): SET_REPORT.
   virtual Expected<void> set_feature(std::span<const std::uint8_t> bytes) = 0;
 

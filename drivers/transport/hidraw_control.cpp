@@ -41,6 +41,10 @@ class HidrawControl final : public DeviceControl {
   }
 
   Expected<void> write_interrupt(std::uint8_t, std::span<const std::uint8_t> bytes) override {
+    return set_output(bytes);
+  }
+
+  Expected<void> set_output(std::span<const std::uint8_t> bytes) override {
     const ssize_t written = ::write(file_.get(), bytes.data(), bytes.size());
     if (written < 0) return node_error(node_, "written to", errno);
     if (static_cast<std::size_t>(written) != bytes.size()) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "drivers/transport/file_handle.hpp"
+#include "drivers/transport/hidraw_control.hpp"
 #include "drivers/transport/node_error.hpp"
 #include "drivers/transport/paced_reader.hpp"
 
@@ -19,8 +20,9 @@ namespace {
 
 class MessageTransport final : public Transport {
  public:
-  MessageTransport(FileHandle file, TraceDevice device, int queue)
-      : file_(std::move(file)), device_(std::move(device)), queue_(queue) {}
+  /// `node`: where others open it, too; empty for a socket.
+  MessageTransport(FileHandle file, std::string node, TraceDevice device, int queue)
+      : file_(std::move(file)), node_(std::move(node)), device_(std::move(device)), queue_(queue) {}
 
   const TraceDevice& device() const noexcept override { return device_; }
   int poll_descriptor() const noexcept override { return file_.get(); }
@@ -38,8 +40,13 @@ class MessageTransport final : public Transport {
     return State::kOpen;
   }
 
+  Expected<std::unique_ptr<DeviceControl>> open_control() const override {
+    return node_.empty() ? Transport::open_control() : open_hidraw_control(node_);
+  }
+
  private:
   FileHandle file_;
+  std::string node_;
   TraceDevice device_;
   int queue_;  // reports that the other end keeps; 0: it waits for us instead
   std::array<std::uint8_t, kMaxReportBytes> buffer_;
@@ -83,12 +90,12 @@ Expected<std::unique_ptr<Transport>> open_hidraw(const std::string& node) {
   device.product = static_cast<std::uint16_t>(info.product);
   device.report_descriptor.assign(descriptor.value, descriptor.value + size);
   constexpr int kHidrawQueue = 63;  // HIDRAW_BUFFER_SIZE is 64, of which one stays empty
-  return std::make_unique<MessageTransport>(std::move(file), std::move(device), kHidrawQueue);
+  return std::make_unique<MessageTransport>(std::move(file), node, std::move(device), kHidrawQueue);
 }
 
 std::unique_ptr<Transport> open_messages(int descriptor, TraceDevice device, int queue) {
   ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
-  return std::make_unique<MessageTransport>(FileHandle(descriptor), std::move(device), queue);
+  return std::make_unique<MessageTransport>(FileHandle(descriptor), "", std::move(device), queue);
 }
 
 }  // namespace limn

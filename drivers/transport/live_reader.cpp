@@ -16,6 +16,7 @@
 
 #include "drivers/transport/file_handle.hpp"
 #include "drivers/transport/paced_reader.hpp"
+#include "drivers/transport/transport_closer.hpp"
 #include "input/base/record_ring.hpp"
 
 namespace limn {
@@ -78,6 +79,7 @@ class LiveReader::Reading {
     hotplug_ = std::move(hotplug);
     for (auto& device : devices) add(std::move(device));
     try {
+      closer_.start();
       thread_ = std::thread([this] { run(); });
     } catch (const std::system_error& error) {
       return fail(ErrorCode::kIo, "", std::string("no thread: ") + error.what(),
@@ -103,6 +105,14 @@ class LiveReader::Reading {
   std::shared_ptr<const TraceDevice> described(DeviceIndex index) {
     const std::lock_guard lock(devices_mutex_);
     return index < slots_.size() ? slots_[index].device : nullptr;
+  }
+  Expected<std::unique_ptr<DeviceControl>> open_control(DeviceIndex index) {
+    const std::lock_guard lock(devices_mutex_);
+    if (index < slots_.size() && slots_[index].transport) {
+      return slots_[index].transport->open_control();
+    }
+    return fail(ErrorCode::kMissing, "device " + std::to_string(index), "is not there",
+                "plug it in");
   }
 
  private:
@@ -169,7 +179,12 @@ class LiveReader::Reading {
     const Transport::State state = slot.transport->drain(sink);
     slot.more = state == Transport::State::kMore;
     if (state != Transport::State::kGone) return;
-    slot.transport.reset();
+    std::unique_ptr<Transport> gone;
+    {
+      const std::lock_guard lock(devices_mutex_);
+      gone = std::move(slot.transport);
+    }
+    closer_.close(std::move(gone));
     if (slot.owes_loss()) push_control(take_loss(index));
     push_control({RecordKind::kGone, index, monotonic_clock().now().count()});
   }
@@ -262,9 +277,12 @@ class LiveReader::Reading {
   FileHandle wake_{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};   // to the thread: stop
   FileHandle ready_{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};  // from the thread: records
   RecordRing ring_{kRingBytes};
-  std::mutex devices_mutex_;  // of slots_[..].device, and slots_' growth
+  // Of slots_' growth, slots_[..].device, and which transport there is. The reading thread alone
+  // changes them, and so looks at them without it.
+  std::mutex devices_mutex_;
   std::vector<Slot> slots_;
   std::unique_ptr<Hotplug> hotplug_;
+  TransportCloser closer_;
   std::atomic<bool> stopping_ = false;
   std::atomic<bool> closed_ = false;
   std::atomic<bool> in_round_ = false;
@@ -286,6 +304,10 @@ Expected<std::unique_ptr<LiveReader>> LiveReader::start(
 }
 
 void LiveReader::stop() noexcept { reading_->stop(); }
+
+Expected<std::unique_ptr<DeviceControl>> LiveReader::open_control(DeviceIndex device) {
+  return reading_->open_control(device);
+}
 
 std::string LiveReader::place() const { return "device " + std::to_string(last_device_); }
 

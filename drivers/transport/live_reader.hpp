@@ -14,7 +14,8 @@ namespace limn {
 ///
 /// One thread sleeps in poll over all devices and drains whichever has something into one lock-free
 /// ring; next() takes events out of it in the caller's thread. From a report's bytes to its event
-/// nothing is allocated. When the caller is slow and the ring is full, reports are dropped,
+/// nothing is allocated. A second thread closes devices that have gone, which may take a dead one a
+/// second. When the caller is slow and the ring is full, reports are dropped,
 /// counted, and told by a note "lost N" before the next one. Notes, as hid-recorder files keep
 /// them:
 ///
@@ -48,6 +49,11 @@ class LiveReader final : public TraceReader {
   Expected<std::optional<TraceEvent>> next_until(Timestamp deadline) override;
 
   std::string place() const override;
+
+  /// What is asked of a device while it is streamed, as Transport::open_control(): the device that
+  /// is there now; when it comes back, open it again. From any thread while this lives. Errors:
+  /// kMissing: it is away, or is read in a way that asks nothing; kIo: no permission.
+  Expected<std::unique_ptr<DeviceControl>> open_control(DeviceIndex device);
 
   /// Ends the stream: next() gives what has come and then TraceEnd. From any thread or signal
   /// handler.

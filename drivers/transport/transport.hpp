@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/transport/device_control.hpp"
+#include "input/base/error.hpp"
 #include "input/base/time.hpp"
 #include "input/trace/trace.hpp"
 
@@ -23,7 +25,8 @@ class TransportSink {
   virtual void lost(std::uint32_t count, bool estimated) noexcept = 0;
 };
 
-/// One open device, whatever brings its bytes. Used by one thread at a time.
+/// One open device, whatever brings its bytes. Used by one thread at a time, but for
+/// open_control().
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -45,6 +48,15 @@ class Transport {
   /// What was given since the last drain() did not all arrive: where reports tell changes only, the
   /// next one must tell the whole state. Nothing to do where each report stands for itself.
   virtual void tell_whole_state() noexcept {}
+
+  /// What is asked of the device while it is streamed, from any thread while this lives. The
+  /// control may be used in another thread than drain() and outlive this: then the device is gone.
+  /// Over USB its requests are answered only while somebody drains. Errors: kMissing where there is
+  /// no such way; kIo as open_hidraw_control().
+  virtual Expected<std::unique_ptr<DeviceControl>> open_control() const {
+    return fail(ErrorCode::kMissing, device().name, "can be read this way, but not asked",
+                "read it by hidraw or USB");
+  }
 
   static constexpr int kMostReports = 128;
 

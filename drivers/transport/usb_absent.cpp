@@ -25,18 +25,14 @@ Expected<std::unique_ptr<UsbInterface>> UsbInterface::claim(const ListedDevice& 
   return absent(listed.node);
 }
 UsbInterface::~UsbInterface() = default;
-Expected<std::vector<std::uint8_t>> UsbInterface::read_string(std::uint8_t index,
-                                                              std::uint16_t language,
-                                                              std::uint16_t length) {
-  return usb_->read_string(index, language, length);
+Expected<std::vector<std::uint8_t>> UsbInterface::read(const ControlRequest&, std::uint16_t,
+                                                       UsbDevice::Silence) {
+  return absent(usb_->node());
+}
+Expected<void> UsbInterface::write(const ControlRequest&, std::span<const std::uint8_t>) {
+  return absent(usb_->node());
 }
 Expected<void> UsbInterface::write_interrupt(std::uint8_t, std::span<const std::uint8_t>) {
-  return absent(usb_->node());
-}
-Expected<void> UsbInterface::set_feature(std::span<const std::uint8_t>) {
-  return absent(usb_->node());
-}
-Expected<std::vector<std::uint8_t>> UsbInterface::get_feature(std::uint8_t, std::size_t) {
   return absent(usb_->node());
 }
 

@@ -94,8 +94,28 @@ void UsbDevice::close() noexcept {
   handle_ = nullptr;
 }
 
-tl::unexpected<Error> UsbDevice::error(const std::string& doing, int code) const {
-  return node_error(node_, doing, errno_of(code));
+tl::unexpected<Error> UsbDevice::error(const std::string& node, const std::string& doing,
+                                       int code) {
+  return node_error(node, doing, errno_of(code));
+}
+
+Expected<std::vector<std::uint8_t>> UsbDevice::answer(const std::string& node,
+                                                      std::vector<std::uint8_t> bytes, int size,
+                                                      Silence silence) {
+  const bool unanswered = size < 0 && size != LIBUSB_ERROR_NO_DEVICE && size != LIBUSB_ERROR_ACCESS;
+  if (size < 0 && !(unanswered && silence == Silence::kIsAnAnswer)) {
+    return error(node, "asked", size);
+  }
+  bytes.resize(std::min(bytes.size(), static_cast<std::size_t>(std::max(size, 0))));
+  return bytes;
+}
+
+Expected<void> UsbDevice::written(const std::string& node, std::uint8_t endpoint, std::size_t bytes,
+                                  int size) {
+  if (size < 0) return error(node, "written to at endpoint " + std::to_string(endpoint), size);
+  if (static_cast<std::size_t>(size) != bytes)
+    return node_error(node, "written to as a whole", EIO);
+  return {};
 }
 
 Expected<std::vector<std::uint8_t>> UsbDevice::read(const ControlRequest& request,
@@ -103,10 +123,7 @@ Expected<std::vector<std::uint8_t>> UsbDevice::read(const ControlRequest& reques
   std::vector<std::uint8_t> bytes(length);
   const int size = libusb_control_transfer(handle_, request.type, request.request, request.value,
                                            request.index, bytes.data(), length, kTimeoutMs);
-  const bool unanswered = size < 0 && size != LIBUSB_ERROR_NO_DEVICE && size != LIBUSB_ERROR_ACCESS;
-  if (size < 0 && !(unanswered && silence == Silence::kIsAnAnswer)) return error("asked", size);
-  bytes.resize(std::min<std::size_t>(length, static_cast<std::size_t>(std::max(size, 0))));
-  return bytes;
+  return answer(node_, std::move(bytes), size, silence);
 }
 
 Expected<void> UsbDevice::write(const ControlRequest& request,

@@ -47,7 +47,19 @@ class UsbDevice {
                                                   std::uint16_t length);
 
   /// The error for one of libusb's codes. `doing` as of node_error().
-  tl::unexpected<Error> error(const std::string& doing, int code) const;
+  tl::unexpected<Error> error(const std::string& doing, int code) const {
+    return error(node_, doing, code);
+  }
+  static tl::unexpected<Error> error(const std::string& node, const std::string& doing, int code);
+
+  /// What a transfer has read into `bytes`; `size`: so many of them, or one of libusb's codes.
+  static Expected<std::vector<std::uint8_t>> answer(const std::string& node,
+                                                    std::vector<std::uint8_t> bytes, int size,
+                                                    Silence silence);
+
+  /// Of `bytes` written to an interrupt-out endpoint; `size` as above.
+  static Expected<void> written(const std::string& node, std::uint8_t endpoint, std::size_t bytes,
+                                int size);
 
   /// Closes the handle: transfers under way end, and the system has the device back.
   void close() noexcept;

@@ -1,11 +1,8 @@
 #include <libusb-1.0/libusb.h>
 
-#include <algorithm>
-#include <cerrno>
 #include <string>
 #include <utility>
 
-#include "drivers/transport/node_error.hpp"
 #include "drivers/transport/usb_transport.hpp"
 
 namespace limn {
@@ -40,9 +37,9 @@ std::size_t packet_bytes(std::uint16_t max_packet_size) {
 Expected<std::unique_ptr<UsbInterface>> UsbInterface::claim(const ListedDevice& listed) {
   auto usb = UsbDevice::open(listed.node);
   if (!usb) return tl::unexpected(std::move(usb.error()));
-  std::unique_ptr<UsbInterface> interface(new UsbInterface(*std::move(usb)));
+  const auto number = static_cast<std::uint8_t>(listed.interface_number);
+  std::unique_ptr<UsbInterface> interface(new UsbInterface(*std::move(usb), number));
   interface->device_ = listed.device;
-  interface->number_ = static_cast<std::uint8_t>(listed.interface_number);
   for (auto step : {&UsbInterface::find_endpoint, &UsbInterface::claim_it,
                     &UsbInterface::read_report_descriptor}) {
     if (auto done = (interface.get()->*step)(); !done) {
@@ -58,7 +55,7 @@ Expected<void> UsbInterface::find_endpoint() {
   if (code != 0) return usb_->error("asked for its configuration", code);
   for (int i = 0; i < config->bNumInterfaces; ++i) {
     const libusb_interface& one = config->interface[i];
-    if (one.num_altsetting < 1 || one.altsetting[0].bInterfaceNumber != number_) continue;
+    if (one.num_altsetting < 1 || one.altsetting[0].bInterfaceNumber != number()) continue;
     const libusb_interface_descriptor& setting = one.altsetting[0];
     if (setting.extra_length > 0) {
       descriptor_bytes_ =
@@ -76,7 +73,7 @@ Expected<void> UsbInterface::find_endpoint() {
   libusb_free_config_descriptor(config);
   if (endpoint_in_ == 0 || packet_bytes_ == 0) {
     return fail(ErrorCode::kIo, usb_->node(),
-                "interface " + std::to_string(number_) + " sends no reports",
+                "interface " + std::to_string(number()) + " sends no reports",
                 "give one that 'limn devices' names");
   }
   if (descriptor_bytes_ > kMostReportDescriptor) {
@@ -91,14 +88,14 @@ Expected<void> UsbInterface::find_endpoint() {
 Expected<void> UsbInterface::claim_it() {
   // Linux's driver goes, and comes back when the interface is released.
   libusb_set_auto_detach_kernel_driver(usb_->handle(), 1);
-  int code = libusb_claim_interface(usb_->handle(), number_);
+  int code = libusb_claim_interface(usb_->handle(), number());
   if (code != 0 && code != LIBUSB_ERROR_BUSY && code != LIBUSB_ERROR_NO_DEVICE) {
     // Where drivers cannot be detached, there may be none.
     libusb_set_auto_detach_kernel_driver(usb_->handle(), 0);
-    code = libusb_claim_interface(usb_->handle(), number_);
+    code = libusb_claim_interface(usb_->handle(), number());
   }
   if (code != 0) {
-    return usb_->error("claimed at interface " + std::to_string(number_), code);
+    return usb_->error("claimed at interface " + std::to_string(number()), code);
   }
   claimed_ = true;
   return {};
@@ -108,8 +105,8 @@ Expected<void> UsbInterface::claim_it() {
 Expected<void> UsbInterface::read_report_descriptor() {
   if (descriptor_bytes_ == 0) return {};
   auto answer =
-      usb_->read({kFromInterface, kGetDescriptor, kReportDescriptor << 8, number_},
-                 static_cast<std::uint16_t>(descriptor_bytes_), UsbDevice::Silence::kIsAnAnswer);
+      read({kFromInterface, kGetDescriptor, kReportDescriptor << 8, number()},
+           static_cast<std::uint16_t>(descriptor_bytes_), UsbDevice::Silence::kIsAnAnswer);
   if (!answer) return tl::unexpected(std::move(answer.error()));
   if (!answer->empty()) device_.report_descriptor = *std::move(answer);
   return {};
@@ -118,15 +115,20 @@ Expected<void> UsbInterface::read_report_descriptor() {
 UsbInterface::~UsbInterface() { close(); }
 
 void UsbInterface::close() noexcept {
-  if (claimed_) libusb_release_interface(usb_->handle(), number_);
+  if (claimed_) libusb_release_interface(usb_->handle(), number());
   claimed_ = false;
   usb_->close();
 }
 
-Expected<std::vector<std::uint8_t>> UsbInterface::read_string(std::uint8_t index,
-                                                              std::uint16_t language,
-                                                              std::uint16_t length) {
-  return usb_->read_string(index, language, length);
+Expected<std::vector<std::uint8_t>> UsbInterface::read(const ControlRequest& request,
+                                                       std::uint16_t length,
+                                                       UsbDevice::Silence silence) {
+  return usb_->read(request, length, silence);
+}
+
+Expected<void> UsbInterface::write(const ControlRequest& request,
+                                   std::span<const std::uint8_t> bytes) {
+  return usb_->write(request, bytes);
 }
 
 Expected<void> UsbInterface::write_interrupt(std::uint8_t endpoint,
@@ -136,25 +138,7 @@ Expected<void> UsbInterface::write_interrupt(std::uint8_t endpoint,
   const int code = libusb_interrupt_transfer(usb_->handle(), endpoint, sent.data(),
                                              static_cast<int>(sent.size()), &written,
                                              static_cast<unsigned>(kRequestTimeout.count()));
-  if (code != 0) return usb_->error("written to at endpoint " + std::to_string(endpoint), code);
-  if (static_cast<std::size_t>(written) != sent.size()) {
-    return node_error(usb_->node(), "written to as a whole", EIO);
-  }
-  return {};
-}
-
-Expected<void> UsbInterface::set_feature(std::span<const std::uint8_t> bytes) {
-  if (bytes.empty()) return {};
-  return usb_->write(set_feature_request(bytes[0], number_), feature_data(bytes));
-}
-
-Expected<std::vector<std::uint8_t>> UsbInterface::get_feature(std::uint8_t id, std::size_t length) {
-  const std::size_t before = id == 0 ? 1 : 0;
-  auto bytes = usb_->read(get_feature_request(id, number_),
-                          static_cast<std::uint16_t>(std::min<std::size_t>(length, 0xFFFF)),
-                          UsbDevice::Silence::kIsAnError);
-  if (bytes && before > 0) bytes->insert(bytes->begin(), 0);
-  return bytes;
+  return UsbDevice::written(usb_->node(), endpoint, sent.size(), code == 0 ? written : code);
 }
 
 }  // namespace limn

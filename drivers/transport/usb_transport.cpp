@@ -13,6 +13,7 @@
 #include "drivers/transport/file_handle.hpp"
 #include "drivers/transport/node_error.hpp"
 #include "drivers/transport/paced_reader.hpp"
+#include "drivers/transport/usb_requests.hpp"
 
 namespace limn {
 namespace {
@@ -41,11 +42,13 @@ std::size_t transfer_bytes(std::span<const std::uint8_t> descriptor, std::size_t
 
 }  // namespace
 
-/// All of it, callbacks included, runs in drain(): nobody else handles events of its context.
+/// All of it but open_control(), callbacks included, runs in drain(): nobody else handles events of
+/// its context.
 class UsbTransport final : public Transport {
  public:
   explicit UsbTransport(std::unique_ptr<UsbInterface> interface)
-      : interface_(std::move(interface)) {}
+      : interface_(std::move(interface)),
+        requests_(std::make_shared<UsbRequests>(node(), interface_->usb_->handle())) {}
   UsbTransport(const UsbTransport&) = delete;
   UsbTransport& operator=(const UsbTransport&) = delete;
 
@@ -54,14 +57,16 @@ class UsbTransport final : public Transport {
     for (Flight& flight : flights_) {
       if (flight.in_the_air) libusb_cancel_transfer(flight.transfer);
     }
+    requests_->cancel();
     WaitingClock& clock = monotonic_clock();
     const Timestamp latest = clock.now() + kLongestGoodbye;
-    while (any_in_the_air() && clock.now() < latest) {
+    while ((any_in_the_air() || requests_->any_in_the_air()) && clock.now() < latest) {
       timeval wait{0, 100'000};
       libusb_handle_events_timeout_completed(context(), &wait, nullptr);
     }
     libusb_set_pollfd_notifiers(context(), nullptr, nullptr, nullptr);
     interface_->close();  // ends those that would not end, too
+    requests_->release();
     for (Flight& flight : flights_) libusb_free_transfer(flight.transfer);
   }
 
@@ -90,6 +95,10 @@ class UsbTransport final : public Transport {
 
   const TraceDevice& device() const noexcept override { return interface_->device_; }
   int poll_descriptor() const noexcept override { return epoll_.get(); }
+
+  Expected<std::unique_ptr<DeviceControl>> open_control() const override {
+    return control_by(requests_, interface_->number());
+  }
 
   State drain(TransportSink& sink) noexcept override {
     if (gone_) return State::kGone;
@@ -201,6 +210,7 @@ class UsbTransport final : public Transport {
 
   FileHandle epoll_{::epoll_create1(EPOLL_CLOEXEC)};
   std::unique_ptr<UsbInterface> interface_;
+  std::shared_ptr<UsbRequests> requests_;  // shared with the controls
   std::array<Flight, kFlights> flights_;
   TransportSink* sink_ = nullptr;  // during a drain
   int landings_ = 0;               // in this drain

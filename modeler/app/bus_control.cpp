@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "drivers/transport/control_request.hpp"
 #include "firmware_sim/link/standard_requests.hpp"
 
 namespace limn::app {
@@ -32,14 +33,22 @@ Expected<void> BusControl::write_interrupt(std::uint8_t, std::span<const std::ui
   return {};
 }
 
+Expected<void> BusControl::set_output(std::span<const std::uint8_t> bytes) {
+  return set_report(ReportKind::kOutput, bytes, "an output report");
+}
+
 Expected<void> BusControl::set_feature(std::span<const std::uint8_t> bytes) {
-  std::vector<std::uint8_t> data(bytes.begin(), bytes.end());
-  const std::uint8_t id = data.empty() ? std::uint8_t{0} : data[0];
-  const auto setup = firmware::set_report(interface_, ReportKind::kFeature, id,
-                                          static_cast<std::uint16_t>(data.size()));
-  if (host_.control(setup, data).status != TransferStatus::kDone) {
-    return refused("a feature report");
-  }
+  return set_report(ReportKind::kFeature, bytes, "a feature report");
+}
+
+Expected<void> BusControl::set_report(ReportKind kind, std::span<const std::uint8_t> bytes,
+                                      const char* what) {
+  if (bytes.empty()) return {};
+  const auto sent = report_data(bytes);
+  std::vector<std::uint8_t> data(sent.begin(), sent.end());
+  const auto setup =
+      firmware::set_report(interface_, kind, bytes[0], static_cast<std::uint16_t>(data.size()));
+  if (host_.control(setup, data).status != TransferStatus::kDone) return refused(what);
   return {};
 }
 

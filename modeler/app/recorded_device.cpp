@@ -1,8 +1,10 @@
 #include "modeler/app/recorded_device.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 #include <variant>
 
@@ -88,6 +90,10 @@ class RecordedDevice::Reading {
     if (!first_) first_ = report.time;
     auto& reports = interface->reports;
     microseconds time = since_first(report.time);
+    if (gone_.erase(report.device) != 0) {
+      come_back(time);
+      gone_.clear();
+    }
     if (!reports.empty()) time = std::max(time, reports.back().time);
     reports.push_back({time, into_.bytes_.size(), report.bytes.size()});
     into_.bytes_.insert(into_.bytes_.end(), report.bytes.begin(), report.bytes.end());
@@ -96,6 +102,7 @@ class RecordedDevice::Reading {
   }
 
   Expected<void> operator()(const TraceNote& note) {
+    if (note.text == "gone" && find(note.device) != nullptr) gone_.insert(note.device);
     const auto string = noted_string(note.text);
     if (string && !string->bytes.empty()) into_.strings_[string->index] = string->bytes;
     return {};
@@ -116,6 +123,16 @@ class RecordedDevice::Reading {
     return found == all.end() ? nullptr : &*found;
   }
 
+  /// The device went after the last report so far, and reports again at `time`.
+  void come_back(microseconds time) {
+    const microseconds last = into_.duration_;
+    if (time <= last) return;
+    const microseconds gap = time - last;
+    const microseconds begin = last + std::min<microseconds>(kLastPoll, gap / 4);
+    const microseconds end = std::max<microseconds>(last + gap / 2, time - kSettling);
+    into_.absences_.push_back({begin, end});
+  }
+
   /// A device's first report may lie before another's that came first. A century is the most, so
   /// that times that a file makes up do no harm.
   microseconds since_first(Timestamp time) const {
@@ -127,6 +144,7 @@ class RecordedDevice::Reading {
   RecordedDevice& into_;
   double speed_;
   std::optional<Timestamp> first_;
+  std::set<DeviceIndex> gone_;  // those of the device's interfaces that have not come back
 };
 
 Expected<std::unique_ptr<RecordedDevice>> RecordedDevice::read(TraceReader& reader, double speed) {
@@ -156,6 +174,13 @@ void RecordedDevice::make_spec() {
   spec_.version = version_;
   spec_.product_name = name_;
   spec_.interfaces = interface_specs_;
+}
+
+bool RecordedDevice::plugged(microseconds now) const noexcept {
+  const auto after =
+      std::upper_bound(absences_.begin(), absences_.end(), now,
+                       [](microseconds time, const Absence& one) { return time < one.begin; });
+  return after == absences_.begin() || now >= std::prev(after)->end;
 }
 
 std::size_t RecordedDevice::next_report(std::uint8_t index, microseconds now,

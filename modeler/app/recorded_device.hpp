@@ -17,7 +17,8 @@ namespace limn::app {
 /// A recording as the code of a USB device: each recorded device is an interface, with its report
 /// descriptor; its reports come at their times, from the first one's on. String descriptors that
 /// the recording notes are answered as they were. No report is ever lost here: those that the host
-/// does not take wait.
+/// does not take wait. Where the recording notes that the device went, and reports come later, it
+/// is unplugged between (plugged()).
 class RecordedDevice final : public firmware::UsbFunction {
  public:
   /// Reads the whole recording. Times are divided by `speed`.
@@ -31,6 +32,13 @@ class RecordedDevice final : public firmware::UsbFunction {
 
   /// When the last report comes.
   std::chrono::microseconds duration() const noexcept { return duration_; }
+
+  /// Whether the recorded device hung on its cable then. It goes kLastPoll after its last report (a
+  /// quarter of the gap at most), as notes have no time of their own, and is back kSettling before
+  /// its next one (at the middle of the gap at the earliest), so that a host has found it by then.
+  bool plugged(std::chrono::microseconds now) const noexcept;
+  static constexpr std::chrono::milliseconds kLastPoll{20};
+  static constexpr std::chrono::milliseconds kSettling{1000};
 
   const firmware::DeviceSpec& spec() const noexcept override { return spec_; }
   void reset() noexcept override {}  // a recording goes on
@@ -52,6 +60,10 @@ class RecordedDevice final : public firmware::UsbFunction {
     std::size_t next = 0;
     std::array<firmware::EndpointSpec, 1> endpoint;
   };
+  struct Absence {
+    std::chrono::microseconds begin{};
+    std::chrono::microseconds end{};
+  };
   class Reading;
 
   RecordedDevice() = default;
@@ -59,6 +71,7 @@ class RecordedDevice final : public firmware::UsbFunction {
 
   std::vector<Interface> interfaces_;
   std::vector<std::uint8_t> bytes_;
+  std::vector<Absence> absences_;  // in order, apart from each other
   std::map<std::uint8_t, std::vector<std::uint8_t>> strings_;
   std::string name_;
   std::uint16_t vendor_ = 0;

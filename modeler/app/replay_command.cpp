@@ -13,10 +13,41 @@
 namespace limn::app {
 namespace {
 
+/// The recorded device, at the end of a cable that is pulled when it was.
+class ReplayedDevice final : public firmware::BusDevice {
+ public:
+  using Time = std::chrono::microseconds;
+
+  /// `recorded` must outlive this.
+  explicit ReplayedDevice(RecordedDevice& recorded) : recorded_(recorded), usb_(recorded) {}
+
+  const firmware::DeviceSpec& spec() const noexcept override { return usb_.spec(); }
+  bool plugged(Time now) noexcept override { return recorded_.plugged(now); }
+  void reset() noexcept override { usb_.reset(); }
+  firmware::TransferResult control(const firmware::SetupPacket& setup, Time now,
+                                   std::span<std::uint8_t> data) noexcept override {
+    return plugged(now) ? usb_.control(setup, now, data) : kAway;
+  }
+  firmware::TransferResult interrupt_in(std::uint8_t endpoint, Time now,
+                                        std::span<std::uint8_t> data) noexcept override {
+    return plugged(now) ? usb_.interrupt_in(endpoint, now, data) : kAway;
+  }
+  firmware::TransferResult interrupt_out(std::uint8_t endpoint, Time now,
+                                         std::span<const std::uint8_t> data) noexcept override {
+    return plugged(now) ? usb_.interrupt_out(endpoint, now, data) : kAway;
+  }
+
+ private:
+  static constexpr firmware::TransferResult kAway{firmware::TransferStatus::kNoDevice, 0};
+
+  RecordedDevice& recorded_;
+  firmware::UsbDevice usb_;
+};
+
 Outcome replay_to_others(TraceReader& reader, const ReplayArguments& arguments) {
   auto recorded = in_file(arguments.trace.path, RecordedDevice::read(reader, arguments.speed));
   if (!recorded) return tl::unexpected(std::move(recorded.error()));
-  firmware::UsbDevice device(**recorded);
+  ReplayedDevice device(**recorded);
   return run_device_link(device, (*recorded)->duration(), arguments.link);
 }
 

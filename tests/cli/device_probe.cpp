@@ -4,6 +4,9 @@
 //                        operator new (libusb's callocs, one a transfer submitted, do not count);
 //                        fails where a drain gave more reports than its share
 //     feature [NODE]     asks it, or the device behind a hidraw node, for feature report 7
+//     streamed           asks the first USB device for feature report 7, and tells it output report
+//     4,
+//                        while it is streamed; and once more when it is gone
 //     hotplug TEXT PATH  plugs in the devices that the file TEXT describes, tells that the one at
 //                        PATH in sysfs has come; its opening waits until a report of another device
 //                        has come through
@@ -67,6 +70,28 @@ int ask_feature(DeviceControl& control) {
   for (const std::uint8_t byte : *report) std::printf("%02x ", byte);
   std::printf("\n");
   return 0;
+}
+
+int ask_streamed(const ListedDevice& listed) {
+  auto opened = open_device(listed);
+  if (!opened) return refuse(opened.error());
+  std::vector<std::unique_ptr<Transport>> devices;
+  devices.push_back(std::move(opened->transport));
+  const auto reader = LiveReader::start(std::move(devices));
+  if (!reader) return refuse(reader.error());
+  const auto control = (*reader)->open_control(0);
+  if (!control) return refuse(control.error());
+  int reports = 0;
+  for (;;) {
+    const auto event = (*reader)->next();
+    if (std::holds_alternative<TraceEnd>(*event)) break;
+    if (!std::holds_alternative<Report>(*event) || ++reports > 1) continue;
+    if (const int failed = ask_feature(**control); failed != 0) return failed;
+    constexpr std::uint8_t kLight[] = {4, 1};
+    if (const auto told = (*control)->set_output(kLight); !told) return refuse(told.error());
+  }
+  std::printf("%d reports, gone\n", reports);
+  return ask_feature(**control);
 }
 
 /// umockdev's library, whose headers are in no package that limn needs.
@@ -158,6 +183,7 @@ int run(int argc, char** argv) {
   const auto listed = list_devices_of(Backend::kUsb);
   if (!listed || listed->empty()) return kFailed;
   if (what == "drain") return drain(listed->front());
+  if (what == "streamed") return ask_streamed(listed->front());
   const auto interface = UsbInterface::claim(listed->front());
   return interface ? ask_feature(**interface) : refuse(interface.error());
 }

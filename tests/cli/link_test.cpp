@@ -63,6 +63,13 @@ class Served {
   std::uint16_t port() const { return port_; }
   const std::string& told() const { return told_; }
 
+  /// Adds its next line to told(); false: it says no more.
+  bool hear() {
+    const std::string next = line();
+    told_ += next;
+    return !next.empty();
+  }
+
   /// Ends it by a signal, or waits for it (0); its exit status, 128 + n for a signal.
   int end(int signal) {
     if (signal != 0) ::kill(child_, signal);
@@ -149,6 +156,31 @@ TEST(Link, AReplayGivesTheRecordingsDescriptorAndReports) {
   EXPECT_EQ(read_reports(client, static_cast<int>(expected.size())), expected);
   EXPECT_EQ(served.end(0), 0) << "it ends with the recording";
   EXPECT_THAT(served.told(), HasSubstr(std::to_string(expected.size()) + " reports"));
+}
+
+TEST(Link, AReplayUnplugsTheDeviceWhereItWasUnplugged) {
+  // Its first reports again, by a device that had gone and is described anew.
+  const std::string before = small_pen_line();
+  const auto reports = recorded(before);
+  const std::string header = before.substr(0, before.find("E: "));
+  std::string report = before.substr(before.find("E: "));
+  report = report.substr(report.find(' ', 3));
+  report.resize(report.find('\n') + 1);
+  const TempFolder folder;
+  const std::string path =
+      folder.write("pen.hid", before + "#limn gone\n" + header + "E: 8.000000" + report);
+  Served served({"replay", path, "--speed", "2"});
+  const auto count = static_cast<int>(reports.size());
+  {
+    UsbipClient client = attach(served);
+    EXPECT_EQ(read_reports(client, count), reports);
+    client.submit_in(static_cast<std::uint32_t>(count + 1), 1, 64);
+    EXPECT_TRUE(client.closed()) << "it stays plugged in";
+  }
+  while (served.told().find("plugged in again") == std::string::npos) ASSERT_TRUE(served.hear());
+  UsbipClient again = attach(served);
+  EXPECT_EQ(read_reports(again, 1).at(0), reports.at(0));
+  EXPECT_EQ(served.end(0), 0);
 }
 
 TEST(Link, ATakenPortIsOneLine) {

@@ -311,6 +311,19 @@ TEST_F(LiveUsb, FeatureReportsAreAskedForOnBothWays) {
   EXPECT_EQ(second.out, "07 01 02 \n");
 }
 
+TEST_F(LiveUsb, AStreamedDeviceIsAskedAndToldThings) {
+  SimulatedUsb mouse;
+  make_small_pen(mouse);
+  mouse.send(small_pen_report(1), 64);
+  mouse.give_feature(7, {0x07, 0x01, 0x02}, 4);
+  mouse.take_output({0x04, 0x01});
+  mouse.send(small_pen_report(2), 64);
+  mouse.fail(ENODEV, 64);
+  const CommandRun run = mouse.run(LIMN_DEVICE_PROBE, "streamed");
+  EXPECT_EQ(run.out, "07 01 02 \n2 reports, gone\n") << run.err;
+  EXPECT_THAT(run.err, HasSubstr("cannot be asked: No such device; plug the device in"));
+}
+
 TEST_F(LiveUsb, OpeningADeviceThatComesHoldsUpNoOther) {
   // Were it opened in the reading thread, the probe would wait for ever.
   SimulatedUsb tablet;

@@ -82,9 +82,13 @@ void SimulatedUsb::give_string(std::uint8_t index, const Bytes& answer) {
            answer.empty() ? -EPIPE : 0, answer);
 }
 
-void SimulatedUsb::take_feature(const Bytes& bytes) {
+void SimulatedUsb::take_output(const Bytes& bytes) { take_report(2, bytes); }
+
+void SimulatedUsb::take_feature(const Bytes& bytes) { take_report(3, bytes); }
+
+void SimulatedUsb::take_report(std::uint8_t kind, const Bytes& bytes) {
   const auto length = static_cast<unsigned>(bytes.size());
-  exchange(kControl, 0, {0x21, 9, bytes[0], 3, interface_number, 0, low(length), high(length)},
+  exchange(kControl, 0, {0x21, 9, bytes[0], kind, interface_number, 0, low(length), high(length)},
            length, bytes, 0, {});
 }
 

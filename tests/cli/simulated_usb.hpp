@@ -31,6 +31,8 @@ class SimulatedUsb {
   void give_descriptor();
   /// It is asked for a string (in US English) and answers; nothing: it stalls.
   void give_string(std::uint8_t index, const Bytes& answer);
+  /// It is sent an output report over the control pipe.
+  void take_output(const Bytes& bytes);
   /// It is sent a feature report.
   void take_feature(const Bytes& bytes);
   /// It is asked for a feature report, at most `length` bytes, and answers.
@@ -66,6 +68,7 @@ class SimulatedUsb {
   std::string packets_;
   std::uint64_t requests_ = 0;
 
+  void take_report(std::uint8_t kind, const Bytes& bytes);
   void exchange(std::uint8_t type, std::uint8_t endpoint, const Bytes& setup, std::uint32_t length,
                 const Bytes& out, int status, const Bytes& in);
   std::string device_text() const;

@@ -4,6 +4,7 @@
 #include <linux/input.h>
 
 #include <algorithm>
+#include <iterator>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -26,7 +27,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPatience = 20s;
-constexpr auto kLookAgain = 100ms;  // looking is work for an emulated processor
+constexpr auto kLookAgain = 400ms;  // looking is work for an emulated processor, waiting is none
 
 /// UHID has a place where USB has an interface: "limn/simulated/1234.0/input1".
 int interface_of(const ListedDevice& row) {
@@ -108,25 +109,37 @@ std::vector<PenSample> samples_of(const std::string& trace) {
   }
 }
 
-std::vector<ListedDevice> wait_for_rows(Backend backend, const firmware::DeviceSpec& spec,
-                                        Cable cable, std::size_t count) {
+std::vector<std::vector<ListedDevice>> wait_for_rows(Backend backend, Cable cable,
+                                                     const std::vector<WantedRows>& wanted) {
   const auto end = std::chrono::steady_clock::now() + kPatience;
   for (;;) {
-    auto rows = list_devices_of(backend).value_or(std::vector<ListedDevice>());
-    std::erase_if(rows, [&](const ListedDevice& row) {
-      return !is_of(row, spec, cable) || !row.readable;  // its node comes a moment after it
-    });
-    std::sort(rows.begin(), rows.end(), [](const ListedDevice& a, const ListedDevice& b) {
-      return std::pair(interface_of(a), a.node) < std::pair(interface_of(b), b.node);
-    });
-    if (rows.size() >= count) return rows;
+    const auto all = list_devices_of(backend).value_or(std::vector<ListedDevice>());
+    std::vector<std::vector<ListedDevice>> rows;
+    for (const WantedRows& one : wanted) {
+      auto& its = rows.emplace_back();
+      std::copy_if(all.begin(), all.end(), std::back_inserter(its), [&](const ListedDevice& row) {
+        return is_of(row, one.spec, cable) && row.readable;  // its node comes a moment after it
+      });
+      std::sort(its.begin(), its.end(), [](const ListedDevice& a, const ListedDevice& b) {
+        return std::pair(interface_of(a), a.node) < std::pair(interface_of(b), b.node);
+      });
+    }
+    const auto [missing, its] = std::mismatch(
+        wanted.begin(), wanted.end(), rows.begin(),
+        [](const WantedRows& one, const auto& found) { return found.size() >= one.count; });
+    if (missing == wanted.end()) return rows;
     if (std::chrono::steady_clock::now() > end) {
-      ADD_FAILURE() << rows.size() << " of " << count << " nodes of " << spec.product_name << " on "
-                    << name(backend);
+      ADD_FAILURE() << its->size() << " of " << missing->count << " nodes of "
+                    << missing->spec.product_name << " on " << name(backend);
       return rows;
     }
     std::this_thread::sleep_for(kLookAgain);
   }
+}
+
+std::vector<ListedDevice> wait_for_rows(Backend backend, const firmware::DeviceSpec& spec,
+                                        Cable cable, std::size_t count) {
+  return wait_for_rows(backend, cable, {{spec, count}}).front();
 }
 
 void wait_until_all_are_gone() {

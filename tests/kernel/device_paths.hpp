@@ -34,6 +34,15 @@ std::vector<PenSample> samples_of(const std::string& trace);
 std::vector<ListedDevice> wait_for_rows(Backend backend, const firmware::DeviceSpec& spec,
                                         Cable cable, std::size_t count);
 
+struct WantedRows {
+  const firmware::DeviceSpec& spec;
+  std::size_t count = 0;
+};
+
+/// The same of several devices, for one look at them all: in the order of `wanted`.
+std::vector<std::vector<ListedDevice>> wait_for_rows(Backend backend, Cable cable,
+                                                     const std::vector<WantedRows>& wanted);
+
 /// Waits until Linux has no simulated device left.
 void wait_until_all_are_gone();
 

@@ -44,8 +44,12 @@ class CapturedDevice final : public DeviceControl {
     ADD_FAILURE() << "no such request was captured";
     return {};
   }
+  Expected<void> set_output(std::span<const std::uint8_t>) override {
+    ADD_FAILURE() << "no such request was captured";
+    return {};
+  }
   Expected<void> set_feature(std::span<const std::uint8_t> bytes) override {
-    const auto data = feature_data(bytes);
+    const auto data = report_data(bytes);
     answer(setup_packet(set_feature_request(bytes[0], interface_), data.size()),
            {data.begin(), data.end()});
     return {};
@@ -133,6 +137,7 @@ class DeadDevice final : public DeviceControl {
     if (refuses_) return refusal();
     return {};
   }
+  Expected<void> set_output(std::span<const std::uint8_t>) override { return refusal(); }
   Expected<void> set_feature(std::span<const std::uint8_t>) override { return refusal(); }
   Expected<Bytes> get_feature(std::uint8_t, std::size_t) override { return refusal(); }
 

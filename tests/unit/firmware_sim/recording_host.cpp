@@ -36,11 +36,11 @@ class RecordingHost::Control final : public DeviceControl {
                                  std::span<const std::uint8_t> bytes) override {
     return done(bus_.interrupt_out(endpoint, now_, bytes).status);
   }
+  Expected<void> set_output(std::span<const std::uint8_t> bytes) override {
+    return set_report(0x0200, bytes);
+  }
   Expected<void> set_feature(std::span<const std::uint8_t> bytes) override {
-    Bytes data(bytes.begin(), bytes.end());
-    const auto value = static_cast<std::uint16_t>(0x0300 | (data.empty() ? 0 : data[0]));
-    const auto length = static_cast<std::uint16_t>(data.size());
-    return done(bus_.control({0x21, 9, value, interface_, length}, now_, data).status);
+    return set_report(0x0300, bytes);
   }
   Expected<Bytes> get_feature(std::uint8_t id, std::size_t length) override {
     const auto value = static_cast<std::uint16_t>(0x0300 | id);
@@ -48,6 +48,12 @@ class RecordingHost::Control final : public DeviceControl {
   }
 
  private:
+  Expected<void> set_report(unsigned kind, std::span<const std::uint8_t> bytes) {
+    Bytes data(bytes.begin(), bytes.end());
+    const auto value = static_cast<std::uint16_t>(kind | (data.empty() ? 0U : data[0]));
+    const auto length = static_cast<std::uint16_t>(data.size());
+    return done(bus_.control({0x21, 9, value, interface_, length}, now_, data).status);
+  }
   static Expected<void> done(TransferStatus status) {
     if (status == TransferStatus::kDone) return {};
     return fail(ErrorCode::kIo, "simulated device", "the request was refused", "");
