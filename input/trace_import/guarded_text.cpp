@@ -6,7 +6,7 @@ namespace limn {
 
 GuardedText::int_type GuardedText::underflow() {
   if (gptr() < egptr()) return traits_type::to_int_type(*gptr());
-  if (error_) return traits_type::eof();
+  if (error_ || stopped_) return traits_type::eof();
   auto count = bytes_->read(buffer_);
   if (!count) {
     error_ = std::move(count.error());

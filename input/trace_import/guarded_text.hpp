@@ -24,6 +24,9 @@ class GuardedText final : public std::streambuf {
   GuardedText(std::unique_ptr<ByteSource> bytes, std::uint64_t most_bytes)
       : bytes_(std::move(bytes)), most_bytes_(most_bytes) {}
 
+  /// Ends the text soon: nobody wants the rest.
+  void stop() noexcept { stopped_ = true; }
+
   /// Why the text ended before its end: kIo, kLimit, kSyntax.
   const std::optional<Error>& error() const noexcept { return error_; }
 
@@ -44,6 +47,7 @@ class GuardedText final : public std::streambuf {
   In in_ = In::kPlain;
   char before_ = '\n';
   int depth_ = 0;
+  bool stopped_ = false;
   std::optional<Error> error_;
   std::array<char, 16384> buffer_{};
 };

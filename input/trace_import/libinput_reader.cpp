@@ -40,10 +40,8 @@ Expected<bool> LibinputReader::step() {
   announce_up_to(record_.devices.size(), item_ == 0 ? 1 : record_.items.back().line);
   if (!record_.failure) return false;
   Error failure = *std::exchange(record_.failure, std::nullopt);
-  // A source that fails is no damage of the file; nor is a format that is not known.
-  if (failure.code == ErrorCode::kIo || failure.code == ErrorCode::kUnknown) {
-    return tl::unexpected(std::move(failure));
-  }
+  // A source that fails is no damage of the file.
+  if (failure.code == ErrorCode::kIo) return tl::unexpected(std::move(failure));
   if (auto told = damaged(std::move(failure)); !told) return tl::unexpected(told.error());
   return true;
 }
@@ -57,6 +55,7 @@ Expected<void> LibinputReader::take(const LibinputRecord::Item& item) {
     case LibinputRecord::Kind::kDamage:
       break;
   }
+  announce_up_to(item.source, item.line);
   return damaged(std::move(record_.damage[item.begin]),
                  item.count > 0 ? std::optional<DeviceIndex>(item.device) : std::nullopt);
 }

@@ -27,9 +27,6 @@ constexpr std::uint16_t kEvSyn = 0;  // <linux/input-event-codes.h>
 constexpr std::uint16_t kSynReport = 0;
 constexpr std::int64_t kAbsMax = 0x3F;
 
-/// Ends the parsing: what is wrong is in the record.
-struct Stop {};
-
 /// A whole number as libinput writes them: decimal, or hexadecimal behind 0x.
 std::optional<std::int64_t> number_of(std::string_view word) {
   if (word.starts_with("0x")) return text::parse_integer<std::int64_t>(word.substr(2), 16);
@@ -45,7 +42,8 @@ bool fits(std::int64_t number) {
 /// follows from what its parent means and the key it stands under.
 class Walker final : public YAML::EventHandler {
  public:
-  Walker(LibinputRecord& record, bool salvage) : record_(record), salvage_(salvage) {}
+  Walker(LibinputRecord& record, GuardedText& text, bool salvage)
+      : record_(record), text_(text), salvage_(salvage) {}
 
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
@@ -155,6 +153,7 @@ class Walker final : public YAML::EventHandler {
   }
 
   void begin(const YAML::Mark& mark, bool is_map) {
+    if (record_.failure) return;
     line_ = static_cast<std::uint32_t>(mark.line + 1);
     // A key that is no word is one that limn does not know.
     const bool is_key = !levels_.empty() && levels_.back().is_map && levels_.back().at_key;
@@ -174,6 +173,7 @@ class Walker final : public YAML::EventHandler {
   }
 
   void end() {
+    if (record_.failure) return;
     const Level level = std::move(levels_.back());
     levels_.pop_back();
     finish_value(level.role);
@@ -186,6 +186,7 @@ class Walker final : public YAML::EventHandler {
   }
 
   void scalar(const YAML::Mark& mark, std::string_view value) {
+    if (record_.failure) return;
     line_ = static_cast<std::uint32_t>(mark.line + 1);
     if (levels_.empty()) return;  // a document of one word
     Level& level = levels_.back();
@@ -228,11 +229,9 @@ class Walker final : public YAML::EventHandler {
       const auto version = number_of(value);
       has_version_ = true;
       if (version == kFormatVersion) return;
-      record_.failure =
-          Error{ErrorCode::kUnknown, place(),
-                "libinput's format " + text::quoted(value) + " is none that limn knows",
-                "record with a libinput that writes version 1"};
-      throw Stop();
+      return give_up(Error{ErrorCode::kUnknown, place(),
+                           "libinput's format " + text::quoted(value) + " is none that limn knows",
+                           "record with a libinput that writes version 1"});
     }
     if (role == Role::kName) {
       if (value.size() > kMaxDeviceTextBytes) {
@@ -276,10 +275,9 @@ class Walker final : public YAML::EventHandler {
 
   void begin_device() {
     if (record_.devices.size() == kMaxTraceDevices) {
-      record_.failure = Error{ErrorCode::kLimit, place(),
-                              "more than " + std::to_string(kMaxTraceDevices) + " devices",
-                              "record fewer devices"};
-      throw Stop();
+      return give_up({ErrorCode::kLimit, place(),
+                      "more than " + std::to_string(kMaxTraceDevices) + " devices",
+                      "record fewer devices"});
     }
     TraceDevice device;
     device.index = static_cast<DeviceIndex>(record_.devices.size());
@@ -438,15 +436,19 @@ class Walker final : public YAML::EventHandler {
     record_.items.push_back(item);
   }
 
+  /// Nothing of what the parser still tells counts any more.
+  void give_up(Error error) {
+    record_.failure = std::move(error);
+    text_.stop();
+  }
+
   void damaged(std::string what, ErrorCode code = ErrorCode::kSyntax, bool frame_lost = false) {
     Error error{code, place(), std::move(what), "add --salvage to skip the damaged part"};
-    if (!salvage_) {
-      record_.failure = std::move(error);
-      throw Stop();
-    }
+    if (!salvage_) return give_up(std::move(error));
     Item item;
     item.kind = Kind::kDamage;
     item.line = line_;
+    item.source = static_cast<std::uint32_t>(record_.devices.size());
     item.begin = record_.damage.size();
     const bool in_frame = std::any_of(levels_.begin(), levels_.end(), [](const Level& level) {
       return level.role == Role::kFrame;
@@ -467,6 +469,7 @@ class Walker final : public YAML::EventHandler {
   };
 
   LibinputRecord& record_;
+  GuardedText& text_;
   bool salvage_;
   bool has_version_ = false;
   std::uint32_t line_ = 1;
@@ -498,14 +501,13 @@ Error parser_error(const YAML::Exception& error) {
 Expected<LibinputRecord> read_libinput_record(std::unique_ptr<ByteSource> bytes, bool salvage) {
   LibinputRecord record;
   GuardedText text(std::move(bytes), kMaxLibinputBytes);
-  Walker walker(record, salvage);
+  Walker walker(record, text, salvage);
   try {
     std::istream in(&text);
     YAML::Parser parser(in);
     parser.HandleNextDocument(walker);
-  } catch (const Stop&) {
   } catch (const YAML::Exception& error) {
-    record.failure = parser_error(error);
+    if (!record.failure) record.failure = parser_error(error);
   }
   // Where the text was ended by its guard, the parser only saw the consequence.
   if (text.error()) record.failure = text.error();

@@ -22,7 +22,7 @@ struct LibinputRecord {
   struct Item {
     Kind kind = Kind::kFrame;
     std::uint32_t device = 0;  ///< of `devices`
-    std::uint32_t source = 0;  ///< of `hidraw_names`
+    std::uint32_t source = 0;  ///< of `hidraw_names`; of damage: devices before it
     std::uint32_t line = 0;
     Timestamp time{};
     std::size_t begin = 0;

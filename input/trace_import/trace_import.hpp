@@ -16,7 +16,8 @@ namespace limn {
 /// recording is read whole before its first event, since one file may hold kMaxLibinputBytes.
 ///
 /// Error: kIo; kSyntax for an empty file or an unknown format; kUnknown for a capture of something
-/// other than USB; kMissing where this limn was built without the library that reads such a file.
+/// other than USB and for another version of libinput's format; kMissing where this limn was built
+/// without the library that reads such a file.
 Expected<std::unique_ptr<TraceReader>> open_import(std::unique_ptr<ByteSource> bytes,
                                                    TraceOptions options = {});
 

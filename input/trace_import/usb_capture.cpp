@@ -2,6 +2,7 @@
 
 #include <pcap/pcap.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -129,7 +130,7 @@ Expected<std::optional<UsbPacket>> UsbCapture::next() {
   const Timestamp time(seconds * kNanosecond + nanoseconds);
   if (!impl_->first) impl_->first = time;
   packet->number = number;
-  packet->time = time - *impl_->first;
+  packet->time = std::max(Timestamp(0), time - *impl_->first);
   return std::optional<UsbPacket>(*packet);
 }
 

@@ -23,7 +23,7 @@ enum class UsbTransfer : std::uint8_t { kIsochronous, kInterrupt, kControl, kBul
 /// ended. The spans are borrowed from the bytes it was made of.
 struct UsbPacket {
   std::uint64_t number = 0;   ///< in the file, from 1
-  Timestamp time{};           ///< since the file's first packet
+  Timestamp time{};           ///< since the file's first packet, 0 before it
   std::uint64_t request = 0;  ///< ties an end to its submission; used again afterwards
   std::uint16_t bus = 0;
   std::uint16_t device = 0;   ///< its address
