@@ -89,7 +89,8 @@ Expected<std::unique_ptr<TraceReader>> open_import(std::unique_ptr<ByteSource> b
   if (format == TraceFormat::kLibinputRecord) {
     auto record = read_libinput_record(std::move(peeked), options.salvage);
     if (!record) return tl::unexpected(std::move(record.error()));
-    if (record->failure && record->failure->code == ErrorCode::kUnknown) {
+    const bool another = record->failure && record->failure->code == ErrorCode::kUnknown;
+    if (another && record->items.empty()) {
       return tl::unexpected(*std::move(record->failure));  // another version
     }
     return std::make_unique<LibinputReader>(*std::move(record), std::move(options));
