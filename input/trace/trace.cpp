@@ -23,7 +23,7 @@ std::unique_ptr<TraceReader> make_reader(TraceFormat format, std::unique_ptr<Byt
       return std::make_unique<UsbhidDumpReader>(std::move(bytes), std::move(options));
     case TraceFormat::kEvemu:
       return std::make_unique<EvemuReader>(std::move(bytes), std::move(options));
-    case TraceFormat::kStrokeCsv:
+    default:  // the others are not told apart here
       break;
   }
   return std::make_unique<StrokeCsvReader>(std::move(bytes), options);
@@ -39,14 +39,15 @@ tl::unexpected<Error> unknown_format(const PeekedBytes& bytes) {
   }
   return fail(ErrorCode::kSyntax, "byte " + std::to_string(bytes.leading_nuls()), std::move(what),
               "give what hid-recorder, usbhid-dump or evemu-record wrote, or a CSV file with the "
-              "columns t,x,y,p");
+              "columns t,x,y,p; limn convert-trace makes one of other programs' captures");
 }
 
 }  // namespace
 
 std::string_view name(TraceFormat format) noexcept {
-  constexpr std::array<std::string_view, 4> kNames = {"hid-recorder", "usbhid-dump", "evemu",
-                                                      "stroke CSV"};
+  constexpr std::array<std::string_view, 7> kNames = {
+      "hid-recorder", "usbhid-dump",        "evemu",     "stroke CSV",
+      "USB capture",  "libinput recording", "motion CSV"};
   return kNames[static_cast<std::size_t>(format)];
 }
 

@@ -34,9 +34,34 @@ namespace limn {
 ///               optional, `#` lines and blank lines are passed over. Every row is a PenSample of
 ///               an ordinary pen in contact. alt and az become tilt, see input/sample/tilt.hpp; an
 ///               alt outside 0..90 is clamped. Such a file describes no device.
-enum class TraceFormat { kHidRecorder, kUsbhidDump, kEvemu, kStrokeCsv };
+///
+/// Those of other programs, which input/trace_import reads:
+///
+/// kUsbCapture   pcap or pcapng of USB, link types 189 and 220 (usbmon of Linux) and 249 (USBPcap
+/// of
+///               Windows). Every interrupt transfer from a HID interface is a report; ids, names,
+///               descriptors and "string" notes are what the captured host asked for. DeviceIndex
+///               is the interface number (128 + the endpoint where the capture does not tell it)
+///               plus 256 times the ordinal of the device. Times count from the first packet.
+/// kLibinputRecord  YAML of `libinput record`, version 1: each listed device with its kernel
+/// frames,
+///               DeviceIndex its position; each recorded hidraw node as a device of its own, behind
+///               them. Where several event nodes tell the same hidraw node's reports, the first
+///               does. Other keys are passed over. Times are libinput's, from the first event.
+/// kMotionCsv    `Timestamp,Tx,Ty,Tz,Rx,Ry,Rz`: date and time, six counts of a 3D mouse; every row
+///               is a report (motion_csv_reader.hpp).
+enum class TraceFormat {
+  kHidRecorder,
+  kUsbhidDump,
+  kEvemu,
+  kStrokeCsv,
+  kUsbCapture,
+  kLibinputRecord,
+  kMotionCsv
+};
 
-/// "hid-recorder", "usbhid-dump", "evemu", "stroke CSV".
+/// "hid-recorder", "usbhid-dump", "evemu", "stroke CSV", "USB capture", "libinput recording",
+/// "motion CSV".
 std::string_view name(TraceFormat format) noexcept;
 
 /// What a recording may hold at most; beyond, a kLimit error. With these a reader's memory is
@@ -47,6 +72,8 @@ inline constexpr std::size_t kMaxReportBytes = 16384;      // Linux's HID_MAX_BU
 inline constexpr std::size_t kMaxDeviceTextBytes = 1024;   // a name, a physical path
 inline constexpr std::size_t kMaxFrameEvents = 4096;
 inline constexpr std::size_t kMaxTraceDevices = 64;
+inline constexpr std::uint64_t kMaxLibinputBytes = std::uint64_t{256}
+                                                   << 20;  // such a file is read whole
 
 /// Range of one kernel-decoded absolute axis (evemu's A: line). Resolution in units per mm (per
 /// radian for tilt); 0 where the kernel did not know it.

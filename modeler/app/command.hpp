@@ -62,6 +62,13 @@ struct DecodeArguments {
   OutputFormat format = OutputFormat::kText;
 };
 
+struct ConvertArguments {
+  TraceArguments trace;
+  std::string output;
+  std::optional<std::uint32_t>
+      device;  ///< the recording's number of the one to keep; all unless set
+};
+
 struct DevicesArguments {
   bool all = false;  ///< what is no pen, too
   OutputFormat format = OutputFormat::kText;
@@ -126,6 +133,7 @@ struct SimulateArguments {
 };
 
 Outcome run_descriptor(const DescriptorArguments& arguments);
+Outcome run_convert(const ConvertArguments& arguments);
 Outcome run_decode(const DecodeArguments& arguments);
 Outcome run_devices(const DevicesArguments& arguments);
 Outcome run_doctor(const DoctorArguments& arguments);

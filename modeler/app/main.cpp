@@ -41,13 +41,15 @@ void add_format(CLI::App& command, OutputFormat& format) {
       ->default_str("text");
 }
 
-void add_trace(CLI::App& command, TraceArguments& trace) {
-  command
-      .add_option("TRACE", trace.path,
-                  "A hid-recorder, usbhid-dump, evemu or stroke CSV (t,x,y,p[,alt,az]) recording, "
-                  "told apart by content; - is standard input")
-      ->required()
-      ->type_name("");
+constexpr const char* kTraces =
+    "A hid-recorder, usbhid-dump, evemu or stroke CSV (t,x,y,p[,alt,az]) recording, told apart by "
+    "content; - is standard input";
+constexpr const char* kForeignTraces =
+    "A USB capture (pcap, pcapng), a recording by libinput, hid-recorder, usbhid-dump or evemu, or "
+    "a CSV file of a 3D mouse, told apart by content; - is standard input";
+
+void add_trace(CLI::App& command, TraceArguments& trace, const char* what = kTraces) {
+  command.add_option("TRACE", trace.path, what)->required()->type_name("");
   command
       .add_option("--descriptor", trace.descriptor_path,
                   "The report descriptor, for recordings without one (usbhid-dump)")
@@ -167,6 +169,23 @@ int run(int argc, char** argv) {
   add_drag(*decode_command, decode.drag);
   add_format(*decode_command, decode.format);
   decode_command->callback([&] { outcome = run_decode(decode); });
+
+  ConvertArguments convert;
+  CLI::App* convert_command = app.add_subcommand(
+      "convert-trace",
+      "Make a hid-recorder file of another program's recording; an evemu file where it holds only "
+      "what the kernel decoded");
+  add_trace(*convert_command, convert.trace, kForeignTraces);
+  convert_command
+      ->add_option("-o,--output", convert.output, "The file to write; - is standard output")
+      ->required()
+      ->type_name("FILE");
+  add_value(
+      *convert_command, "--device",
+      [&convert](const std::string& text) { return parse_index(text, convert.device.emplace()); },
+      "The one device to keep, by its number in the recording; all unless given")
+      ->type_name("N");
+  convert_command->callback([&] { outcome = run_convert(convert); });
 
   DevicesArguments devices;
   CLI::App* devices_command =

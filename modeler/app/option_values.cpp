@@ -135,6 +135,11 @@ std::string parse_port(std::string_view text, std::uint16_t& port) {
   return quoted(text) + " is no port of 127.0.0.1 from 0 to 65535, such as 3240";
 }
 
+std::string parse_index(std::string_view text, std::uint32_t& index) {
+  if (read_all(text, index)) return {};
+  return quoted(text) + " is no device number from 0 on";
+}
+
 std::string parse_seed(std::string_view text, std::uint64_t& seed) {
   if (read_all(text, seed)) return {};
   return quoted(text) + " is no whole number from 0 to 2^64 - 1";

@@ -48,6 +48,9 @@ std::string parse_axes(std::string_view text, std::array<std::uint8_t, 6>& sourc
 /// A TCP port of 127.0.0.1, the only address that limn serves; 0 is any that is free.
 std::string parse_port(std::string_view text, std::uint16_t& port);
 
+/// The number of a device in a recording, from 0 to 2^32 - 1.
+std::string parse_index(std::string_view text, std::uint32_t& index);
+
 /// A whole number from 0 to 2^64 - 1.
 std::string parse_seed(std::string_view text, std::uint64_t& seed);
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "input/trace/descriptor_file.hpp"
+#include "input/trace_import/trace_import.hpp"
 
 namespace limn::app {
 namespace {
@@ -56,16 +57,16 @@ class ProgressBytes final : public ByteSource {
 std::unique_ptr<ByteSource> with_progress(const std::string& path,
                                           std::unique_ptr<ByteSource> bytes) {
   struct stat status {};
-  if (::isatty(STDERR_FILENO) == 0 || ::isatty(STDOUT_FILENO) != 0) return bytes;
+  if (::isatty(STDERR_FILENO) == 0) return bytes;
   if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return bytes;
   return std::make_unique<ProgressBytes>(
       std::move(bytes), static_cast<std::uint64_t>(std::max<off_t>(1, status.st_size)));
 }
 
-}  // namespace
+using Open = Expected<std::unique_ptr<TraceReader>>(std::unique_ptr<ByteSource>, TraceOptions);
 
-tl::expected<std::unique_ptr<TraceReader>, Failure> open_trace_input(
-    const TraceArguments& arguments) {
+tl::expected<std::unique_ptr<TraceReader>, Failure> open_input(const TraceArguments& arguments,
+                                                               Open* open, bool shows_progress) {
   TraceOptions options;
   options.salvage = arguments.salvage;
   options.supplied.vendor = arguments.vendor;
@@ -86,8 +87,27 @@ tl::expected<std::unique_ptr<TraceReader>, Failure> open_trace_input(
     options.supplied.report_descriptor = std::move(descriptors->front().report_descriptor);
   }
   return in_file(arguments.path, open_bytes(arguments.path).and_then([&](auto bytes) {
-    return open_trace(with_progress(arguments.path, std::move(bytes)), std::move(options));
+    if (shows_progress) bytes = with_progress(arguments.path, std::move(bytes));
+    return open(std::move(bytes), std::move(options));
   }));
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<TraceReader>, Failure> open_trace_input(
+    const TraceArguments& arguments) {
+  const bool prints_beside = ::isatty(STDOUT_FILENO) != 0;
+  return open_input(arguments, open_trace, !prints_beside);
+}
+
+tl::expected<std::unique_ptr<TraceReader>, Failure> open_import_input(
+    const TraceArguments& arguments) {
+  return open_input(
+      arguments,
+      [](std::unique_ptr<ByteSource> bytes, TraceOptions options) {
+        return open_import(std::move(bytes), std::move(options));
+      },
+      true);
 }
 
 std::string summarise(const TraceSummary& summary) {

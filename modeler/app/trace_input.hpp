@@ -16,6 +16,11 @@ namespace limn::app {
 tl::expected<std::unique_ptr<TraceReader>, Failure> open_trace_input(
     const TraceArguments& arguments);
 
+/// The same for the recordings of any program that limn knows (open_import()), which are then
+/// written to a file.
+tl::expected<std::unique_ptr<TraceReader>, Failure> open_import_input(
+    const TraceArguments& arguments);
+
 /// What a decoded recording held, for people: "2100 samples, 5 lost, 1 gap, 2 repaired state
 /// transitions". What there was none of is left out.
 std::string summarise(const TraceSummary& summary);

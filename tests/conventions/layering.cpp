@@ -26,6 +26,7 @@ const std::vector<Layer>& layers() {
       {"input/sample", {"input/base"}, {}},
       {"input/stroke", {"input/base", "input/sample"}, {}},
       {"input/trace", {"input/base", "input/sample"}, {}},
+      {"input/trace_import", {"input/base", "input/sample", "input/trace"}, {"pcap/", "yaml-cpp/"}},
 
       {"drivers/hid", {"input/base", "input/sample"}, {}},
       {"drivers/devices", {"input", "drivers/hid"}, {}},

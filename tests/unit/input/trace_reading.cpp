@@ -64,8 +64,11 @@ class Collector {
 }  // namespace
 
 Reading read_trace(std::unique_ptr<ByteSource> bytes, TraceOptions options) {
+  return read_whole(open_trace(std::move(bytes), std::move(options)));
+}
+
+Reading read_whole(Expected<std::unique_ptr<TraceReader>> reader) {
   Reading reading;
-  auto reader = open_trace(std::move(bytes), std::move(options));
   if (!reader) {
     reading.order = "!";
     reading.error = reader.error();

@@ -42,6 +42,9 @@ Reading read_trace(std::unique_ptr<ByteSource> bytes, TraceOptions options = {})
 Reading read_trace(std::string_view text, TraceOptions options = {});
 Reading salvage_trace(std::string_view text);
 
+/// What a reader that is already open, or the error of opening it, gives.
+Reading read_whole(Expected<std::unique_ptr<TraceReader>> reader);
+
 /// Gives `text` in pieces of 1, 2, .. `longest` bytes and again 1, as a pipe might.
 std::unique_ptr<ByteSource> dribble_bytes(std::string_view text, std::size_t longest);
 
