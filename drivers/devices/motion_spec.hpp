@@ -30,6 +30,14 @@ struct MotionSpec {
   std::string_view evidence = {};
 };
 
+/// What is told to a device of 3Dconnexion, as reports with their ID first. `light_report` is an
+/// output report (DeviceControl::set_output), `zero_report` a feature report
+/// (DeviceControl::set_feature): the device takes its cap as it is held for its rest.
+constexpr std::array<std::uint8_t, 2> light_report(bool on) noexcept {
+  return {4, static_cast<std::uint8_t>(on ? 1 : 0)};
+}
+constexpr std::array<std::uint8_t, 2> zero_report() noexcept { return {7, 0}; }
+
 /// All rows; no two have the same ids.
 std::span<const MotionSpec> motion_specs() noexcept;
 

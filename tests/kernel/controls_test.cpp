@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "drivers/devices/motion_spec.hpp"
 #include "drivers/transport/live_reader.hpp"
 #include "drivers/transport/open_device.hpp"
 #include "firmware_sim/devices/space_navigator.hpp"
@@ -35,9 +36,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr std::array<std::uint8_t, 2> kLightOn = {4, 1};
-constexpr std::array<std::uint8_t, 2> kLightOff = {4, 0};
-constexpr std::array<std::uint8_t, 2> kZero = {7, 0};
 constexpr std::array<std::uint8_t, 2> kKept = {5, 42};  // a feature report that is given back
 
 /// A knob at rest at first, then pushed 100 counts along y and about it, and moved one count a
@@ -149,7 +147,7 @@ std::vector<Bytes> expected_reports(std::size_t before, std::size_t count) {
     if (event->kind != firmware::HostEvent::Kind::kReport) continue;
     reports.emplace_back(event->bytes.begin(), event->bytes.end());
     if (reports.size() == before) {
-      EXPECT_TRUE(control.set_feature(kZero));
+      EXPECT_TRUE(control.set_feature(zero_report()));
     }
   }
   return reports;
@@ -179,15 +177,15 @@ TEST_F(KernelControls, AreAnsweredWhileMotionIsStreamedAndLoseNoReport) {
     auto control = reader->open_control(i);
     ASSERT_TRUE(control) << control.error().what;
     controls.at(i) = *std::move(control);
-    EXPECT_TRUE(controls.at(i)->set_output(kLightOn));
+    EXPECT_TRUE(controls.at(i)->set_output(light_report(true)));
     EXPECT_TRUE(mice.at(i).mouse.light());
     EXPECT_TRUE(controls.at(i)->set_feature(kKept));
     const auto kept = controls.at(i)->get_feature(kKept[0], kKept.size());
     ASSERT_TRUE(kept) << kept.error().what;
     EXPECT_THAT(*kept, ElementsAre(kKept[0], kKept[1]));
-    EXPECT_TRUE(controls.at(i)->set_output(kLightOff));
+    EXPECT_TRUE(controls.at(i)->set_output(light_report(false)));
     EXPECT_FALSE(mice.at(i).mouse.light());
-    EXPECT_TRUE(controls.at(i)->set_feature(kZero));
+    EXPECT_TRUE(controls.at(i)->set_feature(zero_report()));
   }
   streamed.take_reports(*reader, kAfter);
   EXPECT_THAT(streamed.notes, IsEmpty());
@@ -204,7 +202,7 @@ TEST_F(KernelControls, AreAnsweredWhileMotionIsStreamedAndLoseNoReport) {
   EXPECT_THAT(streamed.notes, testing::UnorderedElementsAre("0 gone", "1 gone"));
   for (DeviceIndex i = 0; i < mice.size(); ++i) {
     SCOPED_TRACE(i == 0 ? "libusb" : "hidraw");
-    const auto told = controls.at(i)->set_output(kLightOn);
+    const auto told = controls.at(i)->set_output(light_report(true));
     ASSERT_FALSE(told);
     EXPECT_THAT(told.error().what, HasSubstr("No such device"));
     EXPECT_EQ(reader->open_control(i).error().code, ErrorCode::kMissing);
@@ -220,7 +218,7 @@ TEST_F(KernelControls, ASilentDeviceRunsOutOfTimeAndIsStreamedOn) {
   one.mouse.be_silent(true);
   one.device.start();
   const auto control = *reader->open_control(0);
-  const auto told = control->set_output(kLightOn);
+  const auto told = control->set_output(light_report(true));
   ASSERT_FALSE(told);
   EXPECT_EQ(told.error().what, "cannot be told: Connection timed out");
   one.mouse.be_silent(false);              // to Linux, which asks when it has it back
@@ -236,17 +234,18 @@ TEST_F(KernelControls, EndWhereNobodyReadsAndWhenTheStreamGoes) {
   auto transport = one.open(Backend::kUsb);
   ASSERT_TRUE(transport);
   const auto control = *transport->open_control();
-  const auto unread = control->set_output(kLightOn);
+  const auto unread = control->set_output(light_report(true));
   ASSERT_FALSE(unread);
   EXPECT_EQ(unread.error().what, "gives no answer while nobody reads its stream");
   EXPECT_TRUE(one.mouse.light()) << "it was told, all the same";
 
-  auto waiting = std::async(std::launch::async, [&] { return control->set_output(kLightOff); });
+  auto waiting =
+      std::async(std::launch::async, [&] { return control->set_output(light_report(false)); });
   while (one.mouse.light()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   transport.reset();
   const auto ended = waiting.get();  // answered in the last moment, or not
   EXPECT_TRUE(ended || ended.error().what == "cannot be told: No such device");
-  const auto gone = control->set_output(kLightOn);
+  const auto gone = control->set_output(light_report(true));
   ASSERT_FALSE(gone);
   EXPECT_EQ(gone.error().what, "cannot be told: No such device");
   EXPECT_FALSE(one.mouse.light());

@@ -14,6 +14,7 @@
 #include "firmware_sim/devices/drawings.hpp"
 #include "firmware_sim/devices/faulty_device.hpp"
 #include "firmware_sim/devices/motions.hpp"
+#include "input/stroke/drag_sampler.hpp"
 #include "input/stroke/stroke_sampler.hpp"
 #include "tests/unit/drivers/devices_support.hpp"
 #include "tests/unit/firmware_sim/recording_host.hpp"
@@ -124,6 +125,30 @@ FaultSpec severe(FaultKind kind) {
   return fault;
 }
 
+/// No 3D mouse is left moving or pressed, and what was lost is told.
+void expect_rest_at_the_end(const std::string& trace) {
+  limn::TraceDecoder decoder(*open_trace(memory_bytes(trace)), {.salvage = true});
+  std::map<DeviceIndex, Drag> last;
+  std::map<DeviceIndex, bool> pressed;
+  DragSampler drags;
+  std::uint64_t lost = 0;
+  for (;;) {
+    const auto sample = decoder.next_any();
+    ASSERT_TRUE(sample) << sample.error().what;
+    const auto* const motion = std::get_if<const MotionSample*>(&*sample);
+    if (motion == nullptr) break;
+    last[(*motion)->device] = drags.push(**motion);
+    pressed[(*motion)->device] = !(*motion)->buttons.empty();
+    lost += (*motion)->lost;
+  }
+  for (const auto& [device, drag] : last) {
+    EXPECT_EQ(drag.mm_per_s, (std::array<double, 3>{})) << device;
+    EXPECT_EQ(drag.rad_per_s, (std::array<double, 3>{})) << device;
+    EXPECT_FALSE(pressed[device]) << device;
+  }
+  EXPECT_EQ(decoder.summary().losses().lost, lost);
+}
+
 /// One case a device, so that ctest does not start a program for each of the pairs.
 class EachFaultOf : public testing::TestWithParam<SimulatedInfo> {};
 
@@ -145,6 +170,7 @@ TEST_P(EachFaultOf, DoesNoHarm) {
     }
     if (info.kind == SimulatedKind::k3dMouse) {
       EXPECT_THAT(found.decoded.samples, SizeIs(0)) << "no pen's";
+      expect_rest_at_the_end(found.trace);
     }
   }
 }
