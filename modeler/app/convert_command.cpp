@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/devices/device_traits.hpp"
 #include "input/trace/evemu_writer.hpp"
 #include "input/trace/hid_recorder_writer.hpp"
 #include "input/trace/noted_loss.hpp"
@@ -138,6 +139,22 @@ class Conversion {
     return text;
   }
 
+  /// A line of each device whose reports nothing explains: no descriptor, no table.
+  std::string unexplained() const {
+    std::string text;
+    for (const DeviceIndex index : reporting_) {
+      const TraceDevice& device = devices_.at(index).description;
+      if (!device.report_descriptor.empty() || traits_of(device).kind != DeviceKind::kOther)
+        continue;
+      char ids[16];
+      std::snprintf(ids, sizeof ids, "%04x:%04x", device.vendor, device.product);
+      text += "device " + std::to_string(index) + " (" + ids +
+              ") has no report descriptor in it: decode with --salvage, or convert the other with "
+              "--device N\n";
+    }
+    return text;
+  }
+
  private:
   struct Frames {
     StringSink sink;
@@ -257,6 +274,7 @@ Outcome run_convert(const ConvertArguments& arguments) {
   const bool is_evemu = evemu->has_value();
   std::fprintf(stderr, "%s to %s: %s\n", std::string(name((*reader)->format())).c_str(),
                is_evemu ? "evemu" : "hid-recorder", conversion.summary(is_evemu).c_str());
+  std::fputs(conversion.unexplained().c_str(), stderr);
   return {};
 }
 

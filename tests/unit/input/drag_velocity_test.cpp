@@ -1,9 +1,8 @@
-#include "input/stroke/drag_velocity.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "input/stroke/drag_sampler.hpp"
 #include "tests/support/motion_stream.hpp"
 
 namespace limn {
@@ -135,6 +134,23 @@ TEST(DragVelocity, ADeviceThatIsStuckStandsStillUntilItMoves) {
   EXPECT_EQ(stuck.mm_per_s[0], 0);
   EXPECT_TRUE(stuck.at_rest);
   EXPECT_NEAR(drag.push(pushed(time + 16ms, 349)).mm_per_s[0], 100, 1);
+}
+
+TEST(DragSampler, DevicesAreMovedSideBySideAndReplugsBeginAnew) {
+  DragSampler drags;
+  const auto push = [&drags](DeviceIndex device, Timestamp time, int counts,
+                             bool replugged = false) {
+    MotionSample sample = pushed(time, counts);
+    sample.device = device;
+    if (replugged) sample.disturbances = Disturbance::kReset;
+    return drags.push(sample).mm[0];
+  };
+  EXPECT_EQ(push(1, 0ms, 350), 0);
+  EXPECT_EQ(push(2, 10ms, 175), 0);
+  EXPECT_NEAR(push(1, 20ms, 350), 2, 1e-9);
+  EXPECT_NEAR(push(2, 20ms, 175), 0.5, 1e-9);
+  EXPECT_EQ(push(1, 30ms, 350, true), 0) << "nobody knows where it was";
+  EXPECT_NEAR(push(1, 40ms, 350), 1, 1e-9);
 }
 
 TEST(DragVelocity, OptionsAreChecked) {
