@@ -6,6 +6,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "drivers/devices/device_traits.hpp"
 #include "drivers/transport/device_listing.hpp"
 #include "input/base/error.hpp"
 #include "input/stroke/drag_velocity.hpp"
@@ -80,9 +81,11 @@ struct DoctorArguments {
 
 /// Which devices to open, and how.
 struct LiveArguments {
-  std::string device;              ///< VID:PID[:N] or a node; empty for all pens
-  std::optional<Backend> backend;  ///< none: hidraw where it may be read, else what can be
+  std::string device;                  ///< VID:PID[:N] or a node; empty for all of `kind`
+  DeviceKind kind = DeviceKind::kPen;  ///< what is wanted where no device is named
+  std::optional<Backend> backend;      ///< none: hidraw where it may be read, else what can be
   bool initialize = true;
+  bool from_spacenavd = true;  ///< false: its motions are of no use
 };
 
 struct MonitorArguments {
@@ -111,6 +114,14 @@ struct ReplayArguments {
   double speed = 1;
   LinkArguments link;  ///< none: samples go to standard output
   OutputFormat format = OutputFormat::kText;
+};
+
+struct SpnavServerArguments {
+  LiveArguments live;
+  DragOptions drag;
+  std::string socket;    ///< --socket; empty: where this user may
+  TraceArguments trace;  ///< --replay; no path: live devices
+  double speed = 1;
 };
 
 struct SketchArguments {
@@ -142,5 +153,6 @@ Outcome run_record(const RecordArguments& arguments);
 Outcome run_replay(const ReplayArguments& arguments);
 Outcome run_sketch(const SketchArguments& arguments);
 Outcome run_simulate(const SimulateArguments& arguments);
+Outcome run_spnav_server(const SpnavServerArguments& arguments);
 
 }  // namespace limn::app
