@@ -116,6 +116,12 @@ struct ReplayArguments {
   OutputFormat format = OutputFormat::kText;
 };
 
+struct PlotArguments {
+  TraceArguments trace;
+  DragOptions drag;  ///< of 3D mice
+  std::string output;
+};
+
 struct SpnavServerArguments {
   LiveArguments live;
   DragOptions drag;
@@ -149,6 +155,7 @@ Outcome run_decode(const DecodeArguments& arguments);
 Outcome run_devices(const DevicesArguments& arguments);
 Outcome run_doctor(const DoctorArguments& arguments);
 Outcome run_monitor(const MonitorArguments& arguments);
+Outcome run_plot(const PlotArguments& arguments);
 Outcome run_record(const RecordArguments& arguments);
 Outcome run_replay(const ReplayArguments& arguments);
 Outcome run_sketch(const SketchArguments& arguments);

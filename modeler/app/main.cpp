@@ -302,6 +302,17 @@ int run(int argc, char** argv) {
   add_format(*simulate_command, simulate.format);
   simulate_command->callback([&] { outcome = run_simulate(simulate); });
 
+  PlotArguments plot;
+  CLI::App* plot_command = app.add_subcommand(
+      "plot", "Draw a recording over time: a pen's axes; a 3D mouse's axes, velocity and path");
+  add_trace(*plot_command, plot.trace);
+  plot_command
+      ->add_option("-o,--output", plot.output, "The picture, its type by extension: .png .svg .pdf")
+      ->required()
+      ->type_name("FILE");
+  add_drag(*plot_command, plot.drag);
+  plot_command->callback([&] { outcome = run_plot(plot); });
+
   SpnavServerArguments server;
   server.live.kind = DeviceKind::k3dMouse;
   server.live.from_spacenavd = false;
