@@ -6,6 +6,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "drivers/devices/device_traits.hpp"
 #include "drivers/transport/device_listing.hpp"
 #include "input/base/error.hpp"
 #include "input/stroke/drag_velocity.hpp"
@@ -80,9 +81,11 @@ struct DoctorArguments {
 
 /// Which devices to open, and how.
 struct LiveArguments {
-  std::string device;              ///< VID:PID[:N] or a node; empty for all pens
-  std::optional<Backend> backend;  ///< none: hidraw where it may be read, else what can be
+  std::string device;                  ///< VID:PID[:N] or a node; empty for all of `kind`
+  DeviceKind kind = DeviceKind::kPen;  ///< what is wanted where no device is named
+  std::optional<Backend> backend;      ///< none: hidraw where it may be read, else what can be
   bool initialize = true;
+  bool from_spacenavd = true;  ///< false: its motions are of no use
 };
 
 struct MonitorArguments {
@@ -113,6 +116,20 @@ struct ReplayArguments {
   OutputFormat format = OutputFormat::kText;
 };
 
+struct PlotArguments {
+  TraceArguments trace;
+  DragOptions drag;  ///< of 3D mice
+  std::string output;
+};
+
+struct SpnavServerArguments {
+  LiveArguments live;
+  DragOptions drag;
+  std::string socket;    ///< --socket; empty: where this user may
+  TraceArguments trace;  ///< --replay; no path: live devices
+  double speed = 1;
+};
+
 struct SketchArguments {
   TraceArguments trace;
   double tolerance_mm = 0.1;
@@ -138,9 +155,11 @@ Outcome run_decode(const DecodeArguments& arguments);
 Outcome run_devices(const DevicesArguments& arguments);
 Outcome run_doctor(const DoctorArguments& arguments);
 Outcome run_monitor(const MonitorArguments& arguments);
+Outcome run_plot(const PlotArguments& arguments);
 Outcome run_record(const RecordArguments& arguments);
 Outcome run_replay(const ReplayArguments& arguments);
 Outcome run_sketch(const SketchArguments& arguments);
 Outcome run_simulate(const SimulateArguments& arguments);
+Outcome run_spnav_server(const SpnavServerArguments& arguments);
 
 }  // namespace limn::app

@@ -59,14 +59,14 @@ std::optional<DeviceId> parse_device_id(const std::string& text) {
 
 std::vector<ListedDevice> devices_named(const std::vector<ListedDevice>& listed,
                                         const std::optional<DeviceId>& id,
-                                        std::optional<Backend> backend) {
+                                        std::optional<Backend> backend, DeviceKind kind) {
   if (backend == Backend::kSpnav) return listed;
   std::vector<ListedDevice> chosen;
   std::vector<ListedDevice> others;
   for (const ListedDevice& one : listed) {
-    const DeviceKind kind = traits_of(one).kind;
-    if (id ? !has_ids(one, *id) : kind != DeviceKind::kPen) continue;
-    if (kind != DeviceKind::kOther) {
+    const DeviceKind its = traits_of(one).kind;
+    if (id ? !has_ids(one, *id) : its != kind) continue;
+    if (its != DeviceKind::kOther) {
       chosen.push_back(one);
     } else if (one.backend == Backend::kHidraw || one.backend == Backend::kUsb) {
       others.push_back(one);
@@ -94,8 +94,8 @@ std::vector<ListedDevice> pen_interfaces(std::vector<ListedDevice> rows) {
 }
 
 LaterDevices::LaterDevices(std::optional<Backend> asked, std::optional<DeviceId> id,
-                           std::vector<ListedDevice> chosen)
-    : asked_(asked), id_(id), chosen_(std::move(chosen)) {
+                           std::vector<ListedDevice> chosen, DeviceKind kind)
+    : asked_(asked), id_(id), kind_(kind), chosen_(std::move(chosen)) {
   add(asked_.value_or(Backend::kHidraw));
   for (const ListedDevice& one : chosen_) add(one.backend);
 }
@@ -119,7 +119,7 @@ bool LaterDevices::wants(const ListedDevice& one) const {
       std::any_of(chosen_.begin(), chosen_.end(), [&one](const ListedDevice& before) {
         return is_in_place_of(one, before) && one.backend != before.backend;
       });
-  return !on_other_side && !devices_named({one}, id_, asked_).empty();
+  return !on_other_side && !devices_named({one}, id_, asked_, kind_).empty();
 }
 
 void LaterDevices::add(Backend backend) {

@@ -25,12 +25,13 @@ struct DeviceId {
 /// Nothing for text of another form.
 std::optional<DeviceId> parse_device_id(const std::string& text);
 
-/// What to open without being told a node: what `limn devices` lists with the ids, else all pens,
-/// and of spacenavd, asked for by name, whatever it has. Ids that no pen and no 3D mouse has may
-/// still be of a device whose reports are to be recorded.
+/// What to open without being told a node: what `limn devices` lists with the ids, else all of
+/// `kind`, and of spacenavd, asked for by name, whatever it has. Ids that no pen and no 3D mouse
+/// has may still be of a device whose reports are to be recorded.
 std::vector<ListedDevice> devices_named(const std::vector<ListedDevice>& listed,
                                         const std::optional<DeviceId>& id,
-                                        std::optional<Backend> backend);
+                                        std::optional<Backend> backend,
+                                        DeviceKind kind = DeviceKind::kPen);
 
 /// Of the interfaces of one USB device the pen's: the one of its initialisation, else one whose
 /// reports are a pen's; all where neither is known.
@@ -42,7 +43,7 @@ std::vector<ListedDevice> pen_interfaces(std::vector<ListedDevice> rows);
 class LaterDevices {
  public:
   LaterDevices(std::optional<Backend> asked, std::optional<DeviceId> id,
-               std::vector<ListedDevice> chosen);
+               std::vector<ListedDevice> chosen, DeviceKind kind = DeviceKind::kPen);
 
   /// Where to wait; empty: nobody can be waited for.
   const std::vector<Backend>& backends() const noexcept { return backends_; }
@@ -54,6 +55,7 @@ class LaterDevices {
 
   std::optional<Backend> asked_;
   std::optional<DeviceId> id_;
+  DeviceKind kind_;
   std::vector<ListedDevice> chosen_;
   std::vector<Backend> backends_;
 };

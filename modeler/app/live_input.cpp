@@ -92,6 +92,16 @@ tl::expected<std::vector<ListedDevice>, Failure> choose(const std::vector<Listed
   return std::move(choice->rows);
 }
 
+/// A failure where spacenavd has a device, and nobody else may read it.
+Outcome refuse_spacenavds(const std::vector<ListedDevice>& rows) {
+  const auto found = std::find_if(rows.begin(), rows.end(), [](const ListedDevice& one) {
+    return one.backend == Backend::kSpnav;
+  });
+  if (found == rows.end()) return {};
+  return no_device(ErrorCode::kIo, "spacenavd (" + found->node + ") has the 3D mouse to itself",
+                   "stop it (systemctl stop spacenavd), or see 'limn doctor' for permission");
+}
+
 /// Opens a device that has come; nothing where it cannot be, which standard error says.
 std::unique_ptr<Transport> open_late(const ListedDevice& one, bool initialize) {
   auto transport = open_one(one, initialize);
@@ -103,7 +113,8 @@ std::unique_ptr<Transport> open_late(const ListedDevice& one, bool initialize) {
 
 std::string what_is_missing(const LiveArguments& live, bool by_id) {
   if (live.backend == Backend::kSpnav) return "spacenavd does not run";
-  return by_id ? "no device " + live.device + " is here" : "no pen is here";
+  if (by_id) return "no device " + live.device + " is here";
+  return live.kind == DeviceKind::k3dMouse ? "no 3D mouse is here" : "no pen is here";
 }
 
 }  // namespace
@@ -124,7 +135,7 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArg
   auto heard = listen_for_devices();  // before listing, so that nothing is missed in between
   auto listed = in_file("", live.backend ? list_devices_of(*live.backend) : list_devices());
   if (!listed) return tl::unexpected(std::move(listed.error()));
-  auto chosen = devices_named(*listed, id, live.backend);
+  auto chosen = devices_named(*listed, id, live.backend, live.kind);
   if (chosen.empty()) {
     return no_device(ErrorCode::kMissing, what_is_missing(live, id.has_value()),
                      live.backend == Backend::kSpnav ? "start spacenavd, or name its socket"
@@ -134,12 +145,15 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArg
     auto rows = choose(chosen, *listed);
     if (!rows) return tl::unexpected(std::move(rows.error()));
     chosen = *std::move(rows);
+    if (!live.from_spacenavd) {
+      if (auto free = refuse_spacenavds(chosen); !free) return tl::unexpected(free.error());
+    }
   }
   auto opened = open_all(chosen, initialize);
   if (!opened) return tl::unexpected(std::move(opened.error()));
   // Without udev what goes away stays away; everything else still works.
   std::unique_ptr<Hotplug> hotplug;
-  const LaterDevices later(live.backend, id, std::move(chosen));
+  const LaterDevices later(live.backend, id, std::move(chosen), live.kind);
   if (heard && !later.backends().empty()) {
     DeviceWatch watch;
     watch.backends = later.backends();

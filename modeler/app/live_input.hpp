@@ -7,10 +7,10 @@
 
 namespace limn::app {
 
-/// Opens the devices that DEVICE names (see limn(1)), all pens where it is empty, and watches for
-/// them where they may come later. Says on standard error where it uses another backend than hidraw
-/// unasked, where another program uses the device, too, and where a device that should be set up
-/// cannot be. Failure: there is none, or none that may be read.
+/// Opens the devices that DEVICE names (see limn(1)), all of a kind where it is empty, and watches
+/// for them where they may come later. Says on standard error where it uses another backend than
+/// hidraw unasked, where another program uses the device, too, and where a device that should be
+/// set up cannot be. Failure: there is none, or none that may be read.
 tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArguments& live);
 
 }  // namespace limn::app

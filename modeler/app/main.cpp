@@ -66,8 +66,9 @@ void add_trace(CLI::App& command, TraceArguments& trace, const char* what = kTra
 void add_live(CLI::App& command, LiveArguments& live) {
   command
       .add_option("DEVICE", live.device,
-                  "VID:PID, VID:PID:N (the N-th of them from 0) or a node, as limn devices shows "
-                  "them; all pens unless given")
+                  std::string("VID:PID, VID:PID:N (the N-th of them from 0) or a node, as limn "
+                              "devices shows them; all ") +
+                      (live.kind == DeviceKind::k3dMouse ? "3D mice" : "pens") + " unless given")
       ->type_name("");
   add_value(
       command, "--backend",
@@ -300,6 +301,46 @@ int run(int argc, char** argv) {
   for (CLI::Option* other : others) list->excludes(other);
   add_format(*simulate_command, simulate.format);
   simulate_command->callback([&] { outcome = run_simulate(simulate); });
+
+  PlotArguments plot;
+  CLI::App* plot_command = app.add_subcommand(
+      "plot", "Draw a recording over time: a pen's axes; a 3D mouse's axes, velocity and path");
+  add_trace(*plot_command, plot.trace);
+  plot_command
+      ->add_option("-o,--output", plot.output, "The picture, its type by extension: .png .svg .pdf")
+      ->required()
+      ->type_name("FILE");
+  add_drag(*plot_command, plot.drag);
+  plot_command->callback([&] { outcome = run_plot(plot); });
+
+  SpnavServerArguments server;
+  server.live.kind = DeviceKind::k3dMouse;
+  server.live.from_spacenavd = false;
+  CLI::App* server_command = app.add_subcommand(
+      "spnav-server", "Serve 3D mice to programs that know spacenavd, in its place");
+  add_live(*server_command, server.live);
+  server_command
+      ->add_option("--socket", server.socket,
+                   "Where to listen; unless given /run/spnav.sock where this user may, else "
+                   "$XDG_RUNTIME_DIR/spnav.sock")
+      ->type_name("PATH");
+  CLI::Option* from_recording =
+      server_command
+          ->add_option("--replay", server.trace.path,
+                       "Serve a recording, at its pace, from the first client on, instead of "
+                       "devices")
+          ->type_name("TRACE")
+          ->excludes(server_command->get_option("DEVICE"))
+          ->excludes(server_command->get_option("--backend"));
+  add_value(
+      *server_command, "--speed",
+      [&server](const std::string& text) { return parse_speed(text, server.speed); },
+      "A recording, so many times as fast as it was made")
+      ->type_name("X")
+      ->default_str("1")
+      ->needs(from_recording);
+  add_drag(*server_command, server.drag);
+  server_command->callback([&] { outcome = run_spnav_server(server); });
 
   try {
     app.parse(argc, argv);

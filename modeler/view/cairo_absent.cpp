@@ -1,4 +1,5 @@
 #include "modeler/view/picture.hpp"
+#include "modeler/view/sheet.hpp"
 
 namespace limn {
 namespace {
@@ -13,11 +14,12 @@ tl::unexpected<Error> absent(const char* format) {
 
 bool has_cairo() noexcept { return false; }
 
-Expected<std::string> sketch_to_pdf(const Sketch& /*sketch*/, const PictureOptions& /*options*/) {
+Expected<std::string> draw_pdf(const Sheet& /*sheet*/, const Drawing& /*drawing*/) {
   return absent("PDF");
 }
 
-Expected<std::string> sketch_to_png(const Sketch& /*sketch*/, const PictureOptions& /*options*/) {
+Expected<std::string> draw_png(const Sheet& /*sheet*/, double /*pixels*/,
+                               const Drawing& /*drawing*/) {
   return absent("PNG");
 }
 

@@ -7,16 +7,13 @@
 #include <string>
 #include <utility>
 
-#include "modeler/view/draw_sketch.hpp"
+#include "modeler/view/picture.hpp"
+#include "modeler/view/sheet.hpp"
 
 namespace limn {
 namespace {
 
 constexpr double kPointsPerMm = 72 / 25.4;
-
-/// The longer side of a PNG: this many pixels a mm of paper, but kFewestPixels at least.
-constexpr double kPixelsPerMm = 12;  // about 300 a inch
-constexpr int kFewestPixels = 1200;
 
 struct DestroySurface {
   void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
@@ -43,8 +40,8 @@ tl::unexpected<Error> cairo_failed(cairo_status_t status) {
 class CairoCanvas final : public Canvas {
  public:
   /// `scale`: device units a sketch mm.
-  CairoCanvas(cairo_surface_t* surface, const Page& page, double scale)
-      : context_(cairo_create(surface)), origin_(page.origin), scale_(scale) {
+  CairoCanvas(cairo_surface_t* surface, const Sheet& sheet, double scale)
+      : context_(cairo_create(surface)), origin_(sheet.origin), scale_(scale) {
     set_color({255, 255, 255});
     cairo_paint(context_.get());
     cairo_set_line_cap(context_.get(), CAIRO_LINE_CAP_ROUND);
@@ -135,10 +132,10 @@ class CairoCanvas final : public Canvas {
   double scale_;
 };
 
-Expected<void> draw_on(cairo_surface_t* surface, double scale, const Sketch& sketch,
-                       const Page& page, const PictureOptions& options) {
-  CairoCanvas canvas(surface, page, scale);
-  auto drawn = draw_sketch(sketch, page, options, canvas);
+Expected<void> draw_on(cairo_surface_t* surface, double scale, const Sheet& sheet,
+                       const Drawing& drawing) {
+  CairoCanvas canvas(surface, sheet, scale);
+  auto drawn = drawing(canvas);
   if (!drawn) return drawn;
   if (canvas.status() != CAIRO_STATUS_SUCCESS) return cairo_failed(canvas.status());
   return {};
@@ -148,19 +145,17 @@ Expected<void> draw_on(cairo_surface_t* surface, double scale, const Sketch& ske
 
 bool has_cairo() noexcept { return true; }
 
-Expected<std::string> sketch_to_pdf(const Sketch& sketch, const PictureOptions& options) {
-  const auto page = lay_out_page(sketch, options);
-  if (!page) return tl::unexpected(page.error());
-  const double scale = page->paper_scale * kPointsPerMm;
+Expected<std::string> draw_pdf(const Sheet& sheet, const Drawing& drawing) {
+  const double scale = sheet.paper_scale * kPointsPerMm;
   std::string bytes;
-  const Surface surface(cairo_pdf_surface_create_for_stream(append, &bytes, page->width * scale,
-                                                            page->height * scale));
-  cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, "Sketch");
+  const Surface surface(cairo_pdf_surface_create_for_stream(append, &bytes, sheet.width * scale,
+                                                            sheet.height * scale));
+  cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, sheet.title.c_str());
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATOR, "limn");
-  // cairo would put the time of the call: the same sketch must give the same bytes.
+  // cairo would put the time of the call: the same drawing must give the same bytes.
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE,
                                  "1970-01-01T00:00:00Z");
-  if (auto drawn = draw_on(surface.get(), scale, sketch, *page, options); !drawn) {
+  if (auto drawn = draw_on(surface.get(), scale, sheet, drawing); !drawn) {
     return tl::unexpected(std::move(drawn.error()));
   }
   cairo_surface_finish(surface.get());
@@ -169,18 +164,14 @@ Expected<std::string> sketch_to_pdf(const Sketch& sketch, const PictureOptions& 
   return bytes;
 }
 
-Expected<std::string> sketch_to_png(const Sketch& sketch, const PictureOptions& options) {
-  const auto page = lay_out_page(sketch, options);
-  if (!page) return tl::unexpected(page.error());
-  const double longer = std::max(page->width, page->height);
-  const double wanted = std::max<double>(kFewestPixels, kPixelsPerMm * longer * page->paper_scale);
-  const double scale = std::min<double>(options.most_pixels, wanted) / longer;
-  const auto pixels = [&](double mm) {
+Expected<std::string> draw_png(const Sheet& sheet, double pixels, const Drawing& drawing) {
+  const double scale = pixels / std::max(sheet.width, sheet.height);
+  const auto pixels_of = [&](double mm) {
     return std::max(1, static_cast<int>(std::lround(mm * scale)));
   };
-  const Surface surface(
-      cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels(page->width), pixels(page->height)));
-  if (auto drawn = draw_on(surface.get(), scale, sketch, *page, options); !drawn) {
+  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels_of(sheet.width),
+                                                   pixels_of(sheet.height)));
+  if (auto drawn = draw_on(surface.get(), scale, sheet, drawing); !drawn) {
     return tl::unexpected(std::move(drawn.error()));
   }
   std::string bytes;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "modeler/view/draw_sketch.hpp"
+#include "modeler/view/sheet.hpp"
 
 namespace limn {
 namespace {
@@ -21,7 +21,7 @@ int decimals_for(double step) {
 
 class SvgCanvas final : public Canvas {
  public:
-  explicit SvgCanvas(const Page& page)
+  explicit SvgCanvas(const Sheet& page)
       : visible_(decimals_for(kVisibleShare * std::max(page.width, page.height))),
         exact_(std::max(kLeastExactDecimals, visible_ + 3)) {
     const auto attribute = [&](const char* name, double value) {
@@ -41,7 +41,9 @@ class SvgCanvas final : public Canvas {
     point(page.origin, exact_);
     out_ += ' ';
     point({page.width, page.height}, exact_);
-    out_ += "\">\n<title>Sketch</title>\n<rect id=\"page\"";
+    out_ += "\">\n<title>";
+    escaped(page.title);
+    out_ += "</title>\n<rect id=\"page\"";
     attribute(" x=\"", page.origin.x());
     attribute(" y=\"", page.origin.y());
     attribute(" width=\"", page.width);
@@ -92,15 +94,7 @@ class SvgCanvas final : public Canvas {
     out_ += "\" fill=\"";
     hex(color);
     out_ += "\">";
-    for (const char c : utf8) {
-      if (c == '<') {
-        out_ += "&lt;";
-      } else if (c == '&') {
-        out_ += "&amp;";
-      } else {
-        out_ += c;
-      }
-    }
+    escaped(utf8);
     out_ += "</text>\n";
   }
 
@@ -110,6 +104,18 @@ class SvgCanvas final : public Canvas {
   }
 
  private:
+  void escaped(std::string_view utf8) {
+    for (const char c : utf8) {
+      if (c == '<') {
+        out_ += "&lt;";
+      } else if (c == '&') {
+        out_ += "&amp;";
+      } else {
+        out_ += c;
+      }
+    }
+  }
+
   void open_path(std::string_view id, std::string_view css_class, const Path& path, int decimals) {
     out_ += "<path id=\"";
     out_ += id;
@@ -183,13 +189,9 @@ class SvgCanvas final : public Canvas {
 
 }  // namespace
 
-Expected<std::string> sketch_to_svg(const Sketch& sketch, const PictureOptions& options) {
-  const auto page = lay_out_page(sketch, options);
-  if (!page) return tl::unexpected(page.error());
-  SvgCanvas canvas(*page);
-  if (auto drawn = draw_sketch(sketch, *page, options, canvas); !drawn) {
-    return tl::unexpected(std::move(drawn.error()));
-  }
+Expected<std::string> draw_svg(const Sheet& sheet, const Drawing& drawing) {
+  SvgCanvas canvas(sheet);
+  if (auto drawn = drawing(canvas); !drawn) return tl::unexpected(std::move(drawn.error()));
   return canvas.take();
 }
 

@@ -92,6 +92,15 @@ TEST(PenInterfaces, IsTheOneOfTheInitialisation) {
   EXPECT_EQ(pen[0].interface_number, 2);
 }
 
+TEST(DevicesNamed, AreOfTheKindThatIsWanted) {
+  const std::vector<ListedDevice> rows = {row("pen", "usb-1/input0"), spacenavd()};
+  const auto mice = devices_named(rows, {}, {}, DeviceKind::k3dMouse);
+  ASSERT_EQ(mice.size(), 1U);
+  EXPECT_EQ(mice[0].node, "/run/spnav.sock");
+  const LaterDevices later({}, {}, mice, DeviceKind::k3dMouse);
+  EXPECT_FALSE(later.wants(row("pen", "usb-1/input0")));
+}
+
 TEST(LaterDevices, KnowsTheVeryDeviceFromItsTwin) {
   const LaterDevices later({}, parse_device_id("1209:2:1"), {row("b", "usb-2/input0")});
   EXPECT_TRUE(later.wants(row("c", "usb-2/input0"))) << "under another node";

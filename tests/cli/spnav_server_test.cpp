@@ -1,0 +1,250 @@
+// `limn spnav-server` before Debian's libspnav, and before those who use it wrongly.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/cli/run_limn.hpp"
+
+#define SPNAV_CONFIG_H_
+#include <spnav.h>
+
+namespace limn::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// What a program of libspnav's is told; a button has its number in axes[0].
+struct Event {
+  char kind = ' ';  // motion, press, release
+  std::array<int, 6> axes{};
+  int period_ms = 0;
+};
+
+/// What spacenavd tells of the reports of a SpaceNavigator in a hid-recorder file: -350 to 350 is
+/// scaled to -500 to 500, its frame is x, -z, -y of the device's, and rest is told once.
+std::vector<Event> by_spacenavd(const std::string& path) {
+  std::vector<Event> events;
+  std::array<int, 6> state{};
+  unsigned buttons = 0;
+  bool moves = false;
+  double last = -1;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    double time = 0;
+    unsigned size = 0;
+    int read = 0;
+    if (std::sscanf(line.c_str(), "E: %lf %u%n", &time, &size, &read) != 2) continue;
+    std::istringstream words(line.substr(static_cast<std::size_t>(read)));
+    std::vector<int> bytes;
+    for (std::string word; words >> word;) bytes.push_back(std::stoi(word, nullptr, 16));
+    if (bytes.at(0) == 3) {
+      const auto now = static_cast<unsigned>(bytes.at(1));
+      for (int i = 0; i < 8; ++i) {
+        if (((now ^ buttons) >> i & 1) != 0) {
+          events.push_back({(now >> i & 1) != 0 ? 'p' : 'r', {i}, 0});
+        }
+      }
+      buttons = now;
+      continue;
+    }
+    const std::size_t first = bytes.at(0) == 1 ? 0 : 3;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int count = static_cast<std::int16_t>(bytes.at(1 + 2 * i) | bytes.at(2 + 2 * i) << 8);
+      state[first + i] = (count + 350) * 1000 / 700 - 500;
+    }
+    const std::array<int, 6> axes = {state[0], -state[2], -state[1],
+                                     state[3], -state[5], -state[4]};
+    const bool rests = axes == std::array<int, 6>{};
+    if (rests && !moves) continue;
+    moves = !rests;
+    const int period = last < 0 ? 0 : static_cast<int>(std::floor((time - last) * 1e3 + 1e-6));
+    events.push_back({'m', axes, period});
+    last = time;
+  }
+  return events;
+}
+
+/// A running `limn spnav-server`.
+class Serving {
+ public:
+  Serving(std::vector<std::string> arguments, const std::string& socket) {
+    arguments.insert(arguments.begin(), {LIMN_BINARY, "spnav-server", "--socket", socket});
+    std::vector<char*> argv;
+    for (std::string& word : arguments) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    int ends[2];
+    EXPECT_EQ(::pipe(ends), 0);
+    child_ = ::fork();
+    if (child_ == 0) {
+      ::dup2(ends[1], STDERR_FILENO);
+      ::close(ends[0]);
+      ::close(ends[1]);
+      ::execv(argv[0], argv.data());
+      ::_exit(127);
+    }
+    ::close(ends[1]);
+    err_ = ::fdopen(ends[0], "r");
+    told = line();
+  }
+  ~Serving() {
+    if (child_ > 0) end(SIGKILL);
+    std::fclose(err_);
+  }
+  Serving(const Serving&) = delete;
+  Serving& operator=(const Serving&) = delete;
+
+  std::string line() {
+    std::array<char, 512> text{};
+    return std::fgets(text.data(), text.size(), err_) != nullptr ? text.data() : "";
+  }
+  /// The status that it ends with, by itself or (signal > 0) by a signal.
+  int end(int signal) {
+    if (signal > 0) ::kill(child_, signal);
+    int status = 0;
+    ::waitpid(child_, &status, 0);
+    child_ = -1;
+    return status;
+  }
+
+  std::string told;
+
+ private:
+  pid_t child_ = -1;
+  std::FILE* err_ = nullptr;
+};
+
+class SpnavServerCommand : public testing::Test {
+ protected:
+  SpnavServerCommand() { ::setenv("SPNAV_SOCKET", socket_.c_str(), 1); }
+  ~SpnavServerCommand() override {
+    spnav_close();
+    ::unsetenv("SPNAV_SOCKET");
+  }
+  void simulate(const std::string& motion) const {
+    const CommandRun made =
+        run_limn({"simulate", "spacenavigator", "--motion", motion, "-o", trace_});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+
+  TempFolder folder_;
+  std::string trace_ = (folder_.path() / "nav.hid").string();
+  std::string socket_ = (folder_.path() / "spnav.sock").string();
+};
+
+/// All that comes until the server ends.
+std::vector<Event> read_all() {
+  std::vector<Event> events;
+  spnav_event event{};
+  while (spnav_wait_event(&event) != 0) {
+    if (event.type == SPNAV_EVENT_MOTION) {
+      const auto& m = event.motion;
+      events.push_back({'m', {m.x, m.y, m.z, m.rx, m.ry, m.rz}, static_cast<int>(m.period)});
+    } else if (event.type == SPNAV_EVENT_BUTTON) {
+      events.push_back({event.button.press != 0 ? 'p' : 'r', {event.button.bnum}, 0});
+    }
+  }
+  return events;
+}
+
+bool within_one(const std::array<int, 6>& a, const std::array<int, 6>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::abs(a[i] - b[i]) > 1) return false;
+  }
+  return true;
+}
+
+TEST_F(SpnavServerCommand, GivesLibspnavWhatSpacenavdGives) {
+  for (const char* motion : {"push", "twist", "orbit"}) {
+    SCOPED_TRACE(motion);
+    simulate(motion);
+    const std::vector<Event> expected = by_spacenavd(trace_);
+    ASSERT_GT(expected.size(), 100U);
+    Serving serving({"--replay", trace_}, socket_);
+    EXPECT_THAT(serving.told, HasSubstr("listening on " + socket_));
+    EXPECT_THAT(serving.told, HasSubstr("SPNAV_SOCKET=" + socket_));
+    ASSERT_EQ(spnav_open(), 0);
+    EXPECT_EQ(spnav_protocol(), 1);
+    const std::vector<Event> got = read_all();
+    spnav_close();
+    EXPECT_EQ(serving.end(0), 0);
+
+    // Where this process slept, motions became one: with the newest deflection and all the time.
+    EXPECT_GT(got.size(), expected.size() / 2);
+    std::size_t next = 0;
+    for (const Event& event : got) {
+      int period = 0;
+      bool found = false;
+      while (!found && next < expected.size()) {
+        const Event& one = expected[next++];
+        period += one.period_ms;
+        found = one.kind == event.kind && within_one(one.axes, event.axes) &&
+                (event.kind != 'm' || period == event.period_ms);
+        ASSERT_TRUE(found || one.kind == 'm') << "no button is left out";
+      }
+      ASSERT_TRUE(found) << event.kind << testing::PrintToString(event.axes) << event.period_ms;
+    }
+    EXPECT_EQ(next, expected.size()) << "the last one came";
+    EXPECT_FALSE(std::filesystem::exists(socket_));
+  }
+}
+
+TEST_F(SpnavServerCommand, TakesOptionsOf3dMice) {
+  simulate("push");
+  Serving serving({"--replay", trace_, "--sensitivity", "0,0,0,0,0,0", "--speed", "20"}, socket_);
+  ASSERT_EQ(spnav_open(), 0);
+  for (const Event& event : read_all()) EXPECT_NE(event.kind, 'm');
+  EXPECT_EQ(serving.end(0), 0);
+}
+
+TEST_F(SpnavServerCommand, ASignalTakesTheSocketAway) {
+  simulate("push");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    Serving serving({"--replay", trace_}, socket_);
+    EXPECT_TRUE(std::filesystem::is_socket(socket_));
+    const int status = serving.end(signal);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal);
+    EXPECT_FALSE(std::filesystem::exists(socket_));
+  }
+}
+
+TEST_F(SpnavServerCommand, LeavesAnotherServersSocketAlone) {
+  simulate("push");
+  Serving serving({"--replay", trace_}, socket_);
+  const CommandRun second = run_limn({"spnav-server", "--replay", trace_, "--socket", socket_});
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_EQ(second.err, "limn: " + socket_ +
+                            ": another server (spacenavd?) answers there; stop it, or name another "
+                            "place by --socket PATH\n");
+  EXPECT_EQ(spnav_open(), 0);
+}
+
+TEST_F(SpnavServerCommand, SaysWhatIsWrong) {
+  const CommandRun of_spacenavd =
+      run_limn({"spnav-server", "--backend", "spnav", "--socket", socket_});
+  EXPECT_EQ(of_spacenavd.exit_code, 2);
+  EXPECT_THAT(of_spacenavd.err, HasSubstr("what spacenavd serves needs no other server"));
+  EXPECT_EQ(run_limn({"spnav-server", "--speed", "2"}).exit_code, 2);
+  EXPECT_EQ(run_limn({"spnav-server", "046d:c626", "--replay", trace_}).exit_code, 2);
+  const CommandRun missing =
+      run_limn({"spnav-server", "--replay", "/nowhere.hid", "--socket", socket_});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, HasSubstr("/nowhere.hid"));
+  EXPECT_FALSE(std::filesystem::exists(socket_));
+}
+
+}  // namespace
+}  // namespace limn::test
