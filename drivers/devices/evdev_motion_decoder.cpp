@@ -16,7 +16,6 @@ constexpr std::uint16_t kSynDropped = 3;
 constexpr std::uint16_t kBtn0 = 0x100;
 
 constexpr std::size_t kHalf = kMotionAxes / 2;
-constexpr double kUsualFullCounts = 350;
 constexpr double kSpacenavdFullCounts = 500;
 
 }  // namespace
@@ -25,9 +24,11 @@ EvdevMotionDecoder::EvdevMotionDecoder(const TraceDevice& device) {
   const bool spacenavd = device.physical_path == kSpacenavdPath;
   full_counts_.fill(spacenavd ? kSpacenavdFullCounts : kUsualFullCounts);
   for (const EvdevAxis& axis : device.axes) {
-    if (axis.code < kMotionAxes && axis.maximum > 0) full_counts_[axis.code] = axis.maximum;
+    if (axis.code >= kMotionAxes || spacenavd) continue;
+    full_counts_[axis.code] = full_counts(axis.minimum, axis.maximum);
   }
   const MotionSpec* const spec = find_motion_spec(device.vendor, device.product);
+  state_.changes_only = true;
   state_.rests_exactly = spec != nullptr || spacenavd;
   if (spacenavd) {
     frame_ = MotionFrame::kUp;
@@ -82,6 +83,7 @@ std::span<const MotionSample> EvdevMotionDecoder::decode(const EvdevFrame& frame
   for (Half half = 0; half < relative_.size(); ++half) {
     if (relative_[half] && frame.time - *relative_[half] >= kRelativeSilence) release(half);
   }
+  if (state_.translation_told || state_.rotation_told) moved_ = frame.time;
   push(frame.time);
   return pushed();
 }
@@ -104,7 +106,10 @@ void EvdevMotionDecoder::push(Timestamp time) noexcept {
 }
 
 std::optional<Timestamp> EvdevMotionDecoder::due() const noexcept {
-  if (!relative_[0] && !relative_[1]) return std::nullopt;
+  if (!relative_[0] && !relative_[1]) {
+    if (!moved_ || state_.is_zero()) return std::nullopt;
+    return *moved_ + kLongestHold;
+  }
   const Timestamp last =
       std::max(relative_[0].value_or(Timestamp::min()), relative_[1].value_or(Timestamp::min()));
   return last + kRelativeSilence;
@@ -114,11 +119,20 @@ std::span<const MotionSample> EvdevMotionDecoder::advance(Timestamp now) noexcep
   count_ = 0;
   const auto end = due();
   if (!end || *end > now) return pushed();
-  for (Half half = 0; half < relative_.size(); ++half) {
-    if (relative_[half]) release(half);
+  if (!relative_[0] && !relative_[1]) {
+    state_.lost = 1;  // the frame of its release
+    state_.lost_estimated = true;
+    state_.disturbances = Disturbance::kGap;
   }
-  push(*end);
+  stop(*end);
   return pushed();
+}
+
+void EvdevMotionDecoder::stop(Timestamp time) noexcept {
+  for (Half half = 0; half < relative_.size(); ++half) release(half);
+  state_.translation_told = state_.rotation_told = false;
+  state_.silence = true;
+  push(time);
 }
 
 std::span<const MotionSample> EvdevMotionDecoder::disconnect(DeviceIndex device,
@@ -127,10 +141,7 @@ std::span<const MotionSample> EvdevMotionDecoder::disconnect(DeviceIndex device,
   if (state_.is_zero() && state_.buttons.empty()) return {};
   state_.device = device;
   state_.buttons = {};
-  for (Half half = 0; half < relative_.size(); ++half) release(half);
-  state_.translation_told = state_.rotation_told = false;
-  state_.silence = true;
-  push(time);
+  stop(time);
   return pushed();
 }
 

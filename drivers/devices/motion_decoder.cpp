@@ -34,16 +34,6 @@ bool is_multi_axis(const hid::ReportDescriptor& descriptor) {
                      });
 }
 
-/// Firmware that imitates other devices declares all that fits into 16 bits.
-double full_counts(hid::Range logical) {
-  const std::int64_t most = std::max(logical.maximum, -logical.minimum);
-  constexpr std::int64_t kWholeField = std::numeric_limits<std::int16_t>::max();
-  if (logical.minimum > logical.maximum || most <= 0 || most >= kWholeField) {
-    return MotionDecoder::kUsualFullCounts;
-  }
-  return static_cast<double>(most);
-}
-
 std::uint32_t read_le16(std::span<const std::uint8_t> report, std::size_t at) {
   return report[at] | static_cast<std::uint32_t>(report[at + 1]) << 8;
 }
@@ -94,12 +84,17 @@ void MotionDecoder::take_layouts(const hid::ReportDescriptor& descriptor) {
     };
     Layout& into = layout(field.report_id);
     for (std::size_t axis = 0; axis < kMotionAxes; ++axis) {
+      const auto is_it = [axis](const Axis& known) { return known.index == axis; };
+      if (std::any_of(into.axes.begin(), into.axes.end(), is_it)) continue;
       const auto id = static_cast<std::uint16_t>(hid::usage::kX.id + axis);
       if (const auto reader = first({hid::page::kGenericDesktop, id})) {
-        into.axes.push_back({axis, reader, full_counts(field.logical)});
+        into.axes.push_back(
+            {axis, reader, full_counts(field.logical.minimum, field.logical.maximum)});
       }
     }
     for (unsigned number = 1; number <= MotionButtons::kMost; ++number) {
+      const auto is_it = [number](const Button& known) { return known.number == number; };
+      if (std::any_of(into.buttons.begin(), into.buttons.end(), is_it)) continue;
       if (const auto reader = first({hid::page::kButton, static_cast<std::uint16_t>(number)})) {
         into.buttons.push_back({number, reader});
       }

@@ -41,7 +41,6 @@ bool is_multi_axis_controller(std::span<const std::uint8_t> report_descriptor);
 class MotionDecoder {
  public:
   static constexpr std::chrono::milliseconds kSilence{100};
-  static constexpr int kUsualFullCounts = 350;
 
   /// Error: kMissing where neither descriptor nor ids make it a 3D mouse; the parser's for a broken
   /// descriptor of an unknown one.

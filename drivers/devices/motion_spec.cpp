@@ -1,6 +1,7 @@
 #include "drivers/devices/motion_spec.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace limn {
 namespace {
@@ -51,6 +52,13 @@ std::array<double, kMotionAxes> in_motion_frame(const std::array<double, kMotion
   const auto& [x, y, z, rx, ry, rz] = axes;
   if (frame == MotionFrame::kUp) return {x, z, y, rx, rz, ry};
   return {x, 0 - y, 0 - z, rx, 0 - ry, 0 - rz};  // never -0
+}
+
+double full_counts(std::int64_t minimum, std::int64_t maximum) noexcept {
+  const std::int64_t most = std::max(maximum, -minimum);
+  constexpr std::int64_t kWholeField = std::numeric_limits<std::int16_t>::max();
+  if (minimum > maximum || most <= 0 || most >= kWholeField) return kUsualFullCounts;
+  return static_cast<double>(most);
 }
 
 std::span<const MotionSpec> motion_specs() noexcept { return kSpecs; }

@@ -20,6 +20,12 @@ enum class MotionFrame : std::uint8_t {
 std::array<double, kMotionAxes> in_motion_frame(const std::array<double, kMotionAxes>& axes,
                                                 MotionFrame frame) noexcept;
 
+inline constexpr double kUsualFullCounts = 350;
+
+/// The counts of full deflection of an axis with this range: 350 where there is none, or only what
+/// fits into 16 bits, which firmware that imitates other devices declares.
+double full_counts(std::int64_t minimum, std::int64_t maximum) noexcept;
+
 /// What its reports do not say of a 3D mouse. All of these rest by exact zeros.
 struct MotionSpec {
   std::uint16_t vendor = 0;

@@ -45,6 +45,7 @@ class HidrawControl final : public DeviceControl {
   }
 
   Expected<void> set_output(std::span<const std::uint8_t> bytes) override {
+    if (bytes.empty()) return {};
     const ssize_t written = ::write(file_.get(), bytes.data(), bytes.size());
     if (written < 0) return node_error(node_, "written to", errno);
     if (static_cast<std::size_t>(written) != bytes.size()) {
@@ -54,6 +55,7 @@ class HidrawControl final : public DeviceControl {
   }
 
   Expected<void> set_feature(std::span<const std::uint8_t> bytes) override {
+    if (bytes.empty()) return {};
     std::vector<std::uint8_t> sent(bytes.begin(), bytes.end());  // ioctl takes no constant bytes
     if (::ioctl(file_.get(), HIDIOCSFEATURE(sent.size()), sent.data()) < 0) {
       return node_error(node_, "told", errno);

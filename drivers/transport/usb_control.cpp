@@ -21,6 +21,7 @@ Expected<void> UsbControl::set_feature(std::span<const std::uint8_t> bytes) {
 }
 
 Expected<std::vector<std::uint8_t>> UsbControl::get_feature(std::uint8_t id, std::size_t length) {
+  if (id == 0 && length > 0) --length;  // for the ID, which does not travel
   auto bytes = read(get_feature_request(id, number_),
                     static_cast<std::uint16_t>(std::min<std::size_t>(length, 0xFFFF)),
                     UsbDevice::Silence::kIsAnError);

@@ -63,7 +63,9 @@ struct MotionSample {
   bool rotation_told = false;
   /// Its rest is exact zeros: such devices are known by their tables.
   bool rests_exactly = false;
-  /// No report: the device fell silent in mid-motion, which therefore ends.
+  /// Its stream tells changes only: what it does not tell goes on. So do Linux's event nodes.
+  bool changes_only = false;
+  /// No report: the device fell silent in mid-motion, or was unplugged, and the motion ends.
   bool silence = false;
   MotionButtons buttons;
   std::optional<std::uint8_t> battery_percent;  ///< where this report tells it

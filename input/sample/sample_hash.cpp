@@ -60,8 +60,9 @@ std::uint64_t hash_sample(const MotionSample& sample, std::uint64_t before) noex
   fnv.add(sample.device);
   for (const double value : sample.deflection) fnv.add(value);
   for (const std::int32_t count : sample.raw) fnv.add(count);
-  for (const bool flag : {sample.translation_told, sample.rotation_told, sample.rests_exactly,
-                          sample.silence, sample.battery_percent.has_value()}) {
+  for (const bool flag :
+       {sample.translation_told, sample.rotation_told, sample.rests_exactly, sample.changes_only,
+        sample.silence, sample.battery_percent.has_value()}) {
     fnv.add(flag);
   }
   for (const std::uint64_t word : sample.buttons.words()) fnv.add(word);

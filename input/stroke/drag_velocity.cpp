@@ -58,8 +58,15 @@ Drag DragVelocity::push(const MotionSample& sample) noexcept {
     drag.mm_per_s[i] = velocity[i] * options_.mm_per_s;
     drag.rad_per_s[i] = velocity[3 + i] * options_.rad_per_s;
   }
-  advance(halves_[0], drag.mm_per_s, time, stopped || sample.translation_told, drag.mm);
-  advance(halves_[1], drag.rad_per_s, time, stopped || sample.rotation_told, drag.rad);
+  // A dominant axis of one half stops the other, told or not.
+  const auto changes = [this, stopped](const Half& half, const std::array<double, 3>& to) {
+    return stopped || (options_.dominant_axis && half.velocity != to);
+  };
+  const bool moves = sample.translation_told || changes(halves_[0], drag.mm_per_s);
+  const bool turns = sample.rotation_told || changes(halves_[1], drag.rad_per_s);
+  if (stopped) dominant_.reset();
+  advance(halves_[0], drag.mm_per_s, time, moves, drag.mm);
+  advance(halves_[1], drag.rad_per_s, time, turns, drag.rad);
   return drag;
 }
 
@@ -83,7 +90,14 @@ DragVelocity::Six DragVelocity::shaped(const Six& deflection) noexcept {
 }
 
 void DragVelocity::keep_dominant(Six& axes) noexcept {
-  const auto size = [&axes](std::size_t axis) { return std::abs(axes[axis]); };
+  // An axis that drives nothing stands in nobody's way.
+  std::array<bool, kMotionAxes> drives{};
+  for (std::size_t i = 0; i < kMotionAxes; ++i) {
+    if (options_.sensitivity[i] != 0) drives[options_.source[i]] = true;
+  }
+  const auto size = [&axes, &drives](std::size_t axis) {
+    return drives[axis] ? std::abs(axes[axis]) : 0.0;
+  };
   std::size_t most = 0;
   for (std::size_t i = 1; i < kMotionAxes; ++i) {
     if (size(i) > size(most)) most = i;

@@ -27,7 +27,8 @@ struct DragOptions {
   std::array<bool, kMotionAxes> inverted{};  ///< axes of the result
   /// Which axis of the device drives each axis of the result.
   std::array<std::uint8_t, kMotionAxes> source{0, 1, 2, 3, 4, 5};
-  /// Only the axis that is deflected most counts, until another is so by a quarter more.
+  /// Of the axes that drive anything only the one that is deflected most counts, until another is
+  /// so by a quarter more.
   bool dominant_axis = false;
 };
 

@@ -43,9 +43,8 @@ bool RestTracker::is_quiet(const MotionSample& sample) const noexcept {
 }
 
 void RestTracker::push(const MotionSample& sample) noexcept {
-  if (!last_ && sample.rests_exactly) kind_ = Kind::kExact;
-  const Timestamp step = last_ ? std::max(sample.time - *last_, Timestamp::zero()) : Timestamp{};
-  last_ = sample.time;
+  if (!started_ && sample.rests_exactly) kind_ = Kind::kExact;
+  started_ = true;
   watch(sample);
   if (sample.silence) {
     at_rest_ = true;
@@ -54,6 +53,8 @@ void RestTracker::push(const MotionSample& sample) noexcept {
     return;
   }
   if (!sample.translation_told && !sample.rotation_told) return;
+  const Timestamp step = last_ ? std::max(sample.time - *last_, Timestamp::zero()) : Timestamp{};
+  last_ = sample.time;
   if (step >= kPause) {
     // Of devices that tell the halves in turn, the one that rested already may be first.
     if (zero_reports_ == kZeroReports || zero_reports_ == kZeroReports + 1) {
@@ -63,6 +64,7 @@ void RestTracker::push(const MotionSample& sample) noexcept {
     }
     window_.reset();
   }
+  if (sample.is_zero() && kind_ == Kind::kNoisy && !is_quiet(sample)) forget(sample);
   const auto zero = [&sample](std::size_t axis) { return sample.deflection[axis] == 0; };
   zero_reports_ = all_told(sample, zero) ? zero_reports_ + 1 : 0;
   if (!shown_exact_) {
@@ -74,12 +76,19 @@ void RestTracker::push(const MotionSample& sample) noexcept {
   };
   quiet_reports_ = all_told(sample, quiet) ? quiet_reports_ + 1 : 0;
   const bool is_quiet_now = is_quiet(sample);
-  at_rest_ = is_quiet_now && quiet_reports_ >= kZeroReports;
+  at_rest_ = is_quiet_now && quiet_reports_ >= (sample.changes_only ? 1 : kZeroReports);
   if (kind_ != Kind::kNoisy || !is_quiet_now) return;
-  const double weight = std::min(1.0, to_seconds(step) / kFollowSeconds);
+  const double weight = std::min(to_seconds(step), to_seconds(kPause)) / kFollowSeconds;
   for (std::size_t axis = 0; axis < kMotionAxes; ++axis) {
     bias_[axis] += (sample.deflection[axis] - bias_[axis]) * weight;
   }
+}
+
+/// What was learned was a deflection, not rest.
+void RestTracker::forget(const MotionSample& sample) noexcept {
+  kind_ = sample.rests_exactly ? Kind::kExact : Kind::kUnknown;
+  bias_ = {};
+  window_.reset();
 }
 
 void RestTracker::watch(const MotionSample& sample) noexcept {
@@ -114,14 +123,19 @@ void RestTracker::judge(Timestamp time) noexcept {
   const Timestamp length = time - window_->begin;
   switch (kind_) {
     case Kind::kExact:
-      if (length >= kWornAfter) learn();
+      if (length < kWornAfter) break;
+      if (is_within(kWornSpread)) {
+        learn();
+      } else {
+        window_.reset();
+      }
       break;
     case Kind::kUnknown:
       if (length >= kFirstLook) learn();
       break;
     case Kind::kNoisy:
       if (length < kNextLook) break;
-      if (is_steady()) {
+      if (is_within(2 * *std::max_element(noise_.begin(), noise_.end()))) {
         learn();
       } else {
         window_.reset();
@@ -130,10 +144,10 @@ void RestTracker::judge(Timestamp time) noexcept {
   }
 }
 
-/// Whether the window is as quiet as rest was, though perhaps elsewhere.
-bool RestTracker::is_steady() const noexcept {
+/// Whether no axis wandered farther in the window.
+bool RestTracker::is_within(double spread) const noexcept {
   for (std::size_t axis = 0; axis < kMotionAxes; ++axis) {
-    if (window_->high[axis] - window_->low[axis] > 2 * noise_[axis]) return false;
+    if (window_->high[axis] - window_->low[axis] > spread) return false;
   }
   return true;
 }

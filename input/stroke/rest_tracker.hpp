@@ -14,14 +14,15 @@ namespace limn {
 ///
 /// Devices with exact rest send three reports of zeros and fall silent. They have no noise to take
 /// off, so none is: a count is a count. What is known of a device by its table
-/// (MotionSample::rests_exactly) holds until it proves wrong: a worn device never shows such a rest
-/// and stays within kSmall for kWornAfter from the stream's beginning.
+/// (MotionSample::rests_exactly) holds until it proves wrong: a worn device never shows such a
+/// rest, and for kWornAfter stays within kSmall, no axis wandering by more than kWornSpread.
 ///
 /// Any other device may send noise at rest. Until it is known nothing below kSmall counts; once all
 /// axes stayed within kSmall for kFirstLook, their mean is the bias and three times their largest
 /// excursion the noise. The bias then follows what stays in the noise; a steady kNextLook elsewhere
-/// within kSmall replaces it. (A deliberate deflection below kSmall, held as still as that, is
-/// taken for rest: nothing tells them apart.)
+/// within kSmall replaces it. A deliberate deflection below kSmall, held as still as that, is taken
+/// for rest: nothing tells them apart. But a report of zeros only, where rest was learned to be
+/// elsewhere, shows that it was none, and is forgotten.
 ///
 /// A device that says the same to the count, near full deflection or beyond, for kStuckAfter is
 /// stuck until it says something else: no hand is so still, and whoever flies that far can nudge
@@ -40,6 +41,7 @@ class RestTracker {
   static constexpr std::chrono::milliseconds kFirstLook{1000};
   static constexpr std::chrono::seconds kNextLook{2};
   static constexpr std::chrono::seconds kWornAfter{30};
+  static constexpr double kWornSpread = 0.015;             ///< of full deflection: some five counts
   static constexpr std::chrono::milliseconds kPause{100};  ///< silence
   static constexpr int kZeroReports = 3;
   static constexpr double kNearFull = 0.95;
@@ -77,9 +79,11 @@ class RestTracker {
   void look(const MotionSample& sample) noexcept;
   void judge(Timestamp time) noexcept;
   void learn() noexcept;
-  bool is_steady() const noexcept;
+  void forget(const MotionSample& sample) noexcept;
+  bool is_within(double spread) const noexcept;
 
   Kind kind_ = Kind::kUnknown;
+  bool started_ = false;
   bool shown_exact_ = false;  // it rested exactly once, which is for good
   bool at_rest_ = true;
   bool stuck_ = false;
@@ -87,7 +91,7 @@ class RestTracker {
   std::array<std::int32_t, kMotionAxes> same_{};  // counts
   int zero_reports_ = 0;                          // one after the other
   int quiet_reports_ = 0;                         // the same, within the noise
-  std::optional<Timestamp> last_;
+  std::optional<Timestamp> last_;                 // that axes were told
   std::optional<Window> window_;
   Six bias_{};
   Six noise_{};

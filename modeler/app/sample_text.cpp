@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdio>
 #include <numbers>
+#include <utility>
 
 namespace limn::app {
 namespace {
@@ -118,6 +119,12 @@ void append_json_array(const Numbers& numbers, std::string& out) {
   out += ']';
 }
 
+constexpr std::string_view kPenHeading =
+    "       t s  dev tool         state              x mm      y mm  pressure  tilt x  tilt y"
+    "   twist  dist buttons\n";
+constexpr std::string_view kMotionHeading =
+    "       t s  dev tool         state            x         y         z             rx       ry"
+    "       rz\n";
 constexpr std::string_view kMouse = "3d_mouse";
 constexpr std::size_t kMotionCells = 13;  // columns that only 3D mice have
 
@@ -208,14 +215,10 @@ void append_line(const MotionSample& sample, const Drag& drag, std::string& out)
 
 void SampleText::begin(std::string& out) const {
   switch (format_) {
-    case OutputFormat::kText:
-      out +=
-          "       t s  dev tool         state              x mm      y mm  pressure  tilt x  tilt y"
-          "   twist  dist buttons\n";
-      break;
     case OutputFormat::kJson:
       out += '[';
       break;
+    case OutputFormat::kText:
     case OutputFormat::kJsonl:
       break;
     case OutputFormat::kCsv:
@@ -245,6 +248,7 @@ void SampleText::append(const PenSample& sample, std::string& out) {
   append_one(out, [&] {
     switch (format_) {
       case OutputFormat::kText:
+        if (std::exchange(first_pen_, false)) out += kPenHeading;
         return append_line(sample, out);
       case OutputFormat::kCsv:
         return append_csv(sample, out);
@@ -271,6 +275,7 @@ void SampleText::append(const MotionSample& sample, std::string& out) {
   append_one(out, [&] {
     switch (format_) {
       case OutputFormat::kText:
+        if (std::exchange(first_motion_, false)) out += kMotionHeading;
         return app::append_line(sample, drag, out);
       case OutputFormat::kCsv:
         return app::append_csv(sample, drag, out);

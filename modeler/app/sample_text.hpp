@@ -21,7 +21,8 @@ class SampleText {
   SampleText(OutputFormat format, bool with_raw, const DragOptions& drag = {})
       : format_(format), with_raw_(with_raw), drags_(drag) {}
 
-  /// What stands before the first sample and after the last.
+  /// What stands before the first sample and after the last. (In text each kind of device has a
+  /// heading of its own, above its first sample.)
   void begin(std::string& out) const;
   void end(std::string& out) const;
 
@@ -42,6 +43,8 @@ class SampleText {
   bool with_raw_;
   DragSampler drags_;
   bool first_ = true;
+  bool first_pen_ = true;
+  bool first_motion_ = true;
 };
 
 }  // namespace limn::app

@@ -336,7 +336,11 @@ TEST_F(LiveDevices, RecordNeverWritesOverARecording) {
 TEST_F(LiveDevices, RecordEndsCleanlyBySignal) {
   const SimulatedPen pen(5);
   const std::string file = pen.path("mine.hid");
-  const CommandRun run = pen.limn("record -o " + file, "timeout --signal=INT 4");
+  // Once a report is in the file; in the background the shell would have SIGINT ignored.
+  const std::string stopped_when_it_records =
+      "sh -c '\"$@\" & until grep -q ^E: " + file +
+      " 2>/dev/null; do sleep 0.1; done; kill -TERM $!; wait $!' sh";
+  const CommandRun run = pen.limn("record -o " + file, stopped_when_it_records);
   EXPECT_THAT(run.err, HasSubstr(" of 1 device in ")) << run.err;
   EXPECT_THAT(read_file(file), HasSubstr("\nE: 0.000000 "));
 }

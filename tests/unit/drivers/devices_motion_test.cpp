@@ -6,6 +6,7 @@
 #include "drivers/devices/device_traits.hpp"
 #include "drivers/devices/evdev_motion_decoder.hpp"
 #include "drivers/devices/motion_decoder.hpp"
+#include "input/stroke/drag_velocity.hpp"
 #include "tests/support/alloc_guard.hpp"
 #include "tests/unit/drivers/devices_support.hpp"
 #include "tests/unit/drivers/hid_items.hpp"
@@ -277,7 +278,12 @@ TEST(EvdevMotionDecoder, AbsoluteAxesAreHeld) {
   const MotionSample both = mouse(9s, {{{}, kAbs, 5, 35}});
   EXPECT_EQ(both.deflection, (Six{0, 1, 0, 0, 0, -0.1}));
   EXPECT_FALSE(both.translation_told);
-  EXPECT_FALSE(mouse.decoder.due()) << "the kernel says nothing of what does not change";
+  EXPECT_EQ(mouse.decoder.due(), Timestamp(69s)) << "the kernel tells no more than changes";
+  const auto end = mouse.decoder.advance(69s);
+  ASSERT_EQ(end.size(), 1U);
+  EXPECT_TRUE(end[0].silence);
+  EXPECT_TRUE(end[0].disturbances.has(Disturbance::kGap));
+  EXPECT_FALSE(mouse.decoder.due());
 }
 
 TEST(EvdevMotionDecoder, RelativeAxesAreDeflectionsThatNeverTellZero) {
@@ -293,9 +299,27 @@ TEST(EvdevMotionDecoder, RelativeAxesAreDeflectionsThatNeverTellZero) {
   const auto end = mouse.decoder.advance(96ms);
   ASSERT_EQ(end.size(), 1U);
   EXPECT_TRUE(end[0].is_zero());
-  EXPECT_TRUE(end[0].translation_told);
+  EXPECT_TRUE(end[0].silence);
   EXPECT_TRUE(end[0].disturbances.empty()) << "that is how they rest";
   EXPECT_FALSE(mouse.decoder.due());
+}
+
+TEST(EvdevMotionDecoder, ARangeThatIsTheWholeFieldSaysNothing) {
+  DecodedNode mouse(node(k3dconnexion, 0xC62E, 32767));
+  EXPECT_EQ(mouse(1ms, {{{}, kAbs, 0, 350}}).deflection[0], 1);
+}
+
+TEST(EvdevMotionDecoder, WhatItReleasesIsAtRest) {
+  DragVelocity drag;
+  DecodedNode absolute(node(k3dconnexion, 0xC62E, 350));
+  EXPECT_FALSE(drag.push(absolute(1ms, {{{}, kAbs, 0, 350}})).at_rest);
+  EXPECT_TRUE(drag.push(absolute(9ms, {{{}, kAbs, 0, 0}})).at_rest) << "zeros come once";
+  TraceDevice device = node(kLogitech, kNavigator, 0);
+  device.axes.clear();
+  DecodedNode relative(device);
+  DragVelocity other;
+  EXPECT_FALSE(other.push(relative(8ms, {{{}, kRel, 0, 35}})).at_rest);
+  EXPECT_TRUE(other.push(relative.decoder.advance(48ms).front()).at_rest);
 }
 
 TEST(EvdevMotionDecoder, ButtonsComeFromBtn0On) {

@@ -79,6 +79,37 @@ TEST(DragVelocity, TheDominantAxisIsLeftOnlyForAClearlyLargerOne) {
   EXPECT_EQ(x_and_y(40ms, 110, 100), (std::array{true, false}));
 }
 
+TEST(DragVelocity, AnAxisThatDrivesNothingIsNotDominant) {
+  DragOptions options;
+  options.dominant_axis = true;
+  options.sensitivity = {1, 1, 1, 0, 0, 0};
+  DragVelocity drag(options);
+  EXPECT_NE(drag.push(motion_of(0ms, {175, 0, 0, 0, 0, 350})).mm_per_s[0], 0);
+}
+
+TEST(DragVelocity, ADominantAxisOfTheOtherHalfStopsThisOneAtOnce) {
+  DragOptions options;
+  options.dominant_axis = true;
+  DragVelocity drag(options);
+  drag.push(motion_of(0ms, {175, 0, 0, 0, 0, 0}));
+  MotionSample turned = motion_of(10ms, {175, 0, 0, 0, 0, 350});
+  turned.translation_told = false;
+  EXPECT_NEAR(drag.push(turned).mm[0], 0.5, 1e-9);
+  turned.time = 1s;
+  EXPECT_EQ(drag.push(turned).mm[0], 0);
+  EXPECT_EQ(drag.push(motion_of(2s, {175, 0, 0, 0, 0, 350})).mm[0], 0);
+}
+
+TEST(DragVelocity, ASlowFirstPushOfAnUnknownDeviceEndsAtItsRelease) {
+  DragVelocity drag;
+  Timestamp time = 0ms;
+  for (; time < 2s; time += 8ms) drag.push(pushed(time, 10, false));
+  for (int zero = 0; zero < 3; ++zero, time += 8ms) {
+    EXPECT_EQ(drag.push(pushed(time, 0, false)).mm_per_s, (Vector{})) << zero;
+  }
+  EXPECT_EQ(drag.push(pushed(time + 60s, 35, false)).mm, (Vector{}));
+}
+
 TEST(DragVelocity, SilenceBeforeAMotionCountsNothing) {
   DragVelocity drag;
   for (int i = 0; i < 3; ++i) drag.push(pushed(i * 8ms, 0));

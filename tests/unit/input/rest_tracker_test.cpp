@@ -34,6 +34,31 @@ TEST(RestTracker, AWornDeviceNeverRestsExactly) {
   EXPECT_NEAR(rest.bias(0) * test::kFullCounts, 3, 1e-9);
 }
 
+TEST(RestTracker, FineWorkIsNoWornRest) {
+  RestTracker rest;
+  for (int i = 0; i < 5000; ++i) rest.push(pushed(i * 8ms, 3 + i / 100 % 10));
+  EXPECT_EQ(rest.kind(), Kind::kExact);
+}
+
+TEST(RestTracker, ARestThatWasADeflectionIsForgottenAtAZero) {
+  RestTracker rest;
+  const Timestamp time = say(rest, 0ms, 31s, 10, true);
+  EXPECT_EQ(rest.kind(), Kind::kNoisy);
+  rest.push(pushed(time, 0));
+  EXPECT_EQ(rest.kind(), Kind::kExact);
+  EXPECT_EQ(rest.bias(0), 0);
+}
+
+TEST(RestTracker, AButtonInThePauseHidesItNot) {
+  RestTracker rest;
+  const Timestamp time = say(rest, 0ms, 24ms, 0);
+  MotionSample button = pushed(time + 80ms, 0, false);
+  button.translation_told = button.rotation_told = false;
+  rest.push(button);
+  rest.push(pushed(time + 160ms, 100, false));
+  EXPECT_EQ(rest.kind(), Kind::kExact);
+}
+
 TEST(RestTracker, ThreeZerosAndSilenceAreAnExactRestForGood) {
   RestTracker rest;
   Timestamp time = say(rest, 0ms, 200ms, 100);
