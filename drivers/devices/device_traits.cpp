@@ -46,7 +46,7 @@ bool is_3d_mouse(const TraceDevice& device) {
 
 DeviceTraits traits_of(const TraceDevice& device) {
   if (is_3d_mouse(device)) return {DeviceKind::k3dMouse, "3D mouse", {}, {}};
-  if (!device.axes.empty()) return kernel_pen(device);
+  if (device.is_kernel_decoded()) return kernel_pen(device);
   PenIdentity identity;
   identity.vendor = device.vendor;
   identity.product = device.product;

@@ -177,6 +177,9 @@ TraceDevice describe(const libevdev* evdev, const std::string& node) {
     device.axes.push_back({static_cast<std::uint16_t>(code), axis->minimum, axis->maximum,
                            axis->fuzz, axis->flat, axis->resolution});
   }
+  for (std::uint16_t code = REL_X; device.axes.empty() && code <= REL_RZ; ++code) {
+    if (libevdev_has_event_code(evdev, EV_REL, code) != 0) device.relative_axes.push_back(code);
+  }
   const auto event = device_of_node(node);
   if (const auto hid = event ? event->above("hid") : std::nullopt) {
     device.report_descriptor = hid->bytes("report_descriptor");

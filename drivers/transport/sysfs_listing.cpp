@@ -106,6 +106,17 @@ std::vector<EvdevAxis> axes_of(const std::string& node, const SysfsDevice& input
   return axes;
 }
 
+/// Old 3D mice call their axes relative. Ordinary mice have two of them and wheels.
+std::vector<std::uint16_t> relative_axes_of(const SysfsDevice& input) {
+  const std::string bitmap = input.attribute("capabilities/rel");
+  std::vector<std::uint16_t> axes;
+  for (std::uint16_t code = REL_X; code <= REL_RZ; ++code) {
+    if (!has_capability(bitmap, code)) return {};
+    axes.push_back(code);
+  }
+  return axes;
+}
+
 std::optional<ListedDevice> listed_event(const SysfsDevice& event, const std::string& root) {
   const auto input = event.above("input");
   if (!input) return std::nullopt;
@@ -113,7 +124,8 @@ std::optional<ListedDevice> listed_event(const SysfsDevice& event, const std::st
   listed.backend = Backend::kEvdev;
   listed.node = root + "/dev/input/" + event.name();
   listed.device.axes = axes_of(listed.node, *input);
-  if (listed.device.axes.empty()) return std::nullopt;
+  if (listed.device.axes.empty()) listed.device.relative_axes = relative_axes_of(*input);
+  if (!listed.device.is_kernel_decoded()) return std::nullopt;
   listed.readable = is_readable(listed.node);
   listed.device.name = input->attribute("name");
   listed.device.physical_path = input->attribute("phys");

@@ -107,6 +107,10 @@ struct TraceDevice {
   std::vector<EvdevAxis> axes;                  ///< of kernel-decoded devices: evemu, evdev
   /// Its own serial number or Bluetooth address. Of live devices; no format keeps it.
   std::string unique_id = {};
+  /// Codes of relative axes, of kernel-decoded 3D mice that have no others. Of live devices.
+  std::vector<std::uint16_t> relative_axes = {};
+
+  bool is_kernel_decoded() const noexcept { return !axes.empty() || !relative_axes.empty(); }
 };
 
 /// The trace describes a device: sent before its first report or frame, and again when the trace

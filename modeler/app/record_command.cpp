@@ -46,7 +46,7 @@ class Recorder {
   const Counts& counts() const noexcept { return counts_; }
 
   Expected<void> operator()(const DeviceDescribed& described) {
-    const bool decoded = !described.device->axes.empty();
+    const bool decoded = described.device->is_kernel_decoded();
     const bool mixed = counts_.devices > 0 && (decoded || evemu_) &&
                        (decoded != evemu_ || described.device->index != 0);
     if (mixed) {

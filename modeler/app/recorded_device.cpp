@@ -42,7 +42,7 @@ class RecordedDevice::Reading {
 
   Expected<void> operator()(const DeviceDescribed& described) {
     const TraceDevice& device = *described.device;
-    if (!device.axes.empty()) return no_reports("what the kernel decoded");
+    if (device.is_kernel_decoded()) return no_reports("what the kernel decoded");
     if (device.vendor == 0 && device.product == 0) {
       return fail(ErrorCode::kMissing, "", "the recording does not say whose device it is",
                   "give its ids with --id VID:PID");

@@ -43,8 +43,8 @@ class Keeper {
   explicit Keeper(std::vector<ListedDevice> rows) : rows_(std::move(rows)) {}
 
   void operator()(const DeviceDescribed& described) {
-    EXPECT_TRUE(described.device->axes.empty() ? reports_.describe(*described.device)
-                                               : frames_.describe(*described.device));
+    EXPECT_TRUE(described.device->is_kernel_decoded() ? frames_.describe(*described.device)
+                                                      : reports_.describe(*described.device));
   }
   void operator()(const Report& report) {
     const int interface =

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <thread>
 
+#include "drivers/devices/trace_decoder.hpp"
 #include "drivers/hid/descriptor_parser.hpp"
 #include "firmware_sim/devices/catalogue.hpp"
 #include "firmware_sim/link/usbip_server.hpp"
@@ -270,8 +271,53 @@ std::vector<int> changes(const std::vector<int>& values) {
   return changes;
 }
 
-/// The event nodes that limn reads, those with absolute axes: a pen's and a 3D mouse's. (The
-/// SpaceNavigator calls its axes relative.)
+/// What limn makes of a recording of a 3D mouse: the counts of each deflection, once while it
+/// stays.
+std::vector<std::array<std::int32_t, kMotionAxes>> deflections_of(const std::string& trace) {
+  std::vector<std::array<std::int32_t, kMotionAxes>> all;
+  auto reader = open_trace(memory_bytes(trace), {});
+  EXPECT_TRUE(reader) << reader.error().what;
+  if (!reader) return all;
+  TraceDecoder decoder(*std::move(reader), {.salvage = true});
+  for (;;) {
+    const auto sample = decoder.next_any();
+    EXPECT_TRUE(sample) << sample.error().what;
+    const auto* const motion = sample ? std::get_if<const MotionSample*>(&*sample) : nullptr;
+    if (motion == nullptr) return all;
+    const bool pushed = !(*motion)->is_zero() && (all.empty() || all.back() != (*motion)->raw);
+    if (pushed) all.push_back((*motion)->raw);
+  }
+}
+
+/// A 3D mouse that calls its axes relative, of which the kernel tells no zero.
+void expect_relative_event_node(Cable cable) {
+  constexpr std::size_t kFrames = 120;  // of a push's: only half of its reports are translations
+  Held mouse("spacenavigator", "push");
+  const PluggedDevice plugged(mouse.device, cable);
+  Taking taking(wait_for_rows(Backend::kEvdev, mouse.device.spec(), cable, 1), kFrames);
+  taking.wait_until_open();
+  mouse.device.start();
+  const Taken taken = taking.get();
+  EXPECT_EQ(taken.frames, kFrames);
+  EXPECT_THAT(taken.notes, IsEmpty());
+  const auto got = deflections_of(taken.trace);
+  auto expected = deflections_of(
+      expected_from("spacenavigator", "push", 2 * kFrames + 100, Setup::kNone).trace);
+  EXPECT_GT(got.size(), kFrames / 2);
+  ASSERT_GE(expected.size(), got.size());
+  expected.resize(got.size());
+  EXPECT_EQ(got, expected);
+}
+
+TEST_F(KernelLinks, RelativeEventNodesOfUhidTellTheSame) {
+  expect_relative_event_node(Cable::kUhid);
+}
+
+TEST_F(KernelLinks, RelativeEventNodesOfUsbipTellTheSame) {
+  expect_relative_event_node(Cable::kUsbip);
+}
+
+/// The event nodes of a pen and of a 3D mouse whose axes are absolute.
 void expect_event_nodes(Cable cable) {
   constexpr std::size_t kChanges = 150;  // of a push's 206 reports
   Held pen("pen", "signature");

@@ -181,6 +181,20 @@ TEST(ListEvdevDevices, LeavesOutWhatHasNoAxes) {
   EXPECT_THAT(list_evdev_devices(system.root() + "/nowhere"), IsEmpty());
 }
 
+TEST(ListEvdevDevices, KnowsA3dMouseWhoseAxesAreRelative) {
+  const FakeSystem system;
+  system.event_node();
+  const std::string input = std::string("/sys") + FakeSystem::kInput;
+  system.file(input + "/capabilities/abs", "0\n");
+  system.file(input + "/capabilities/rel", "3f\n");
+  const auto listed = list_evdev_devices(system.root());
+  ASSERT_EQ(listed.size(), 1U);
+  EXPECT_THAT(listed[0].device.axes, IsEmpty());
+  EXPECT_THAT(listed[0].device.relative_axes, ElementsAre(0, 1, 2, 3, 4, 5));
+  system.file(input + "/capabilities/rel", "143\n");  // X, Y, wheels: an ordinary mouse
+  EXPECT_THAT(list_evdev_devices(system.root()), IsEmpty());
+}
+
 TEST(ListFreeUsbDevices, NamesDevicesWhoseHidInterfaceNobodyHas) {
   const FakeSystem system;
   system.usb_device();
