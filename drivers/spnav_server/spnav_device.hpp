@@ -11,7 +11,7 @@ namespace limn {
 struct SpnavDevice {
   DeviceIndex index = 0;
   std::string name;
-  std::string path;  ///< its node
+  std::string path;  ///< its node; empty where that is not known
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
   unsigned buttons = 2;

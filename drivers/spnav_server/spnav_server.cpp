@@ -1,6 +1,7 @@
 #include "drivers/spnav_server/spnav_server.hpp"
 
 #include <poll.h>
+#include <signal.h>  // pthread_sigmask is POSIX
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -81,8 +82,19 @@ class SpnavServer::Serving {
   Serving(const Serving&) = delete;
   Serving& operator=(const Serving&) = delete;
 
+  /// Signals are left to the caller's threads, whose handlers may use what they guard.
   void start() {
-    thread_ = std::thread([this] { run(); });
+    sigset_t all;
+    sigset_t before;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before);
+    try {
+      thread_ = std::thread([this] { run(); });
+    } catch (...) {
+      ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+      throw;
+    }
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }
 
   template <class Tell>
@@ -183,6 +195,7 @@ class SpnavServer::Serving {
   }
 
   void serve(Client& client, short events) {
+    bool greets = false;
     if ((events & POLLIN) != 0) {
       read(client);
     } else if ((events & (POLLHUP | POLLERR | POLLNVAL)) != 0) {
@@ -191,10 +204,12 @@ class SpnavServer::Serving {
     if (client.greeted_by && (client.session.has_spoken() || Clock::now() >= *client.greeted_by)) {
       client.greeted_by.reset();
       client.session.start();
-      had_client_ = true;
-      greeted_.notify_all();
+      greets = true;
     }
     flush(client);
+    if (!greets || client.gone || (events & POLLHUP) != 0) return;
+    had_client_ = true;
+    greeted_.notify_all();
   }
 
   void read(Client& client) {

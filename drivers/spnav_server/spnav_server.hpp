@@ -47,8 +47,8 @@ class SpnavServer final : public SpnavSink {
 
   /// Of those that are connected now.
   std::size_t clients() const;
-  /// Whether a client has been there that was ready for events, waiting for the first no longer
-  /// than so long.
+  /// Whether a client has been there that was ready for events and had not left, waiting for the
+  /// first no longer than so long.
   bool wait_for_client(std::chrono::milliseconds longest) const;
 
  private:

@@ -171,8 +171,8 @@ void SpnavSession::fill() {
     for (unsigned number = 1; number <= MotionButtons::kMost && has_room(); ++number) {
       const bool pressed = pressed_.has(number);
       if (pressed == told_.has(number)) continue;
+      if (pressed && !wants(kButtons)) continue;  // a release ends what was told
       told_.set(number, pressed);
-      if (!wants(kButtons)) continue;
       const auto from_0 = static_cast<std::int32_t>(number - 1);
       events_.push_back({Message{pressed ? kPress : kRelease, from_0}});
     }

@@ -23,7 +23,10 @@ std::unique_ptr<TraceReader> make_reader(TraceFormat format, std::unique_ptr<Byt
       return std::make_unique<UsbhidDumpReader>(std::move(bytes), std::move(options));
     case TraceFormat::kEvemu:
       return std::make_unique<EvemuReader>(std::move(bytes), std::move(options));
-    default:  // the others are not told apart here
+    case TraceFormat::kStrokeCsv:
+    case TraceFormat::kUsbCapture:  // this and those below are not told apart here
+    case TraceFormat::kLibinputRecord:
+    case TraceFormat::kMotionCsv:
       break;
   }
   return std::make_unique<StrokeCsvReader>(std::move(bytes), options);

@@ -56,8 +56,12 @@ Expected<void> LibinputReader::take(const LibinputRecord::Item& item) {
       break;
   }
   announce_up_to(item.source, item.line);
-  return damaged(std::move(record_.damage[item.begin]),
-                 item.count > 0 ? std::optional<DeviceIndex>(item.device) : std::nullopt);
+  const LibinputRecord::Damage& damage = record_.damage[item.begin];
+  for (std::uint64_t i = 0; i < damage.places; ++i) {
+    const auto of = i < item.count ? std::optional<DeviceIndex>(item.device) : std::nullopt;
+    if (auto told = damaged(damage.first, of); !told) return told;
+  }
+  return {};
 }
 
 Expected<void> LibinputReader::take_frame(const LibinputRecord::Item& item) {

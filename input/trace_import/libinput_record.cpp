@@ -453,10 +453,19 @@ class Walker final : public YAML::EventHandler {
     const bool in_frame = std::any_of(levels_.begin(), levels_.end(), [](const Level& level) {
       return level.role == Role::kFrame;
     });
-    item.count = in_frame || frame_lost;
+    item.count = in_frame || frame_lost ? 1 : 0;
     item.device =
         record_.devices.empty() ? 0 : static_cast<std::uint32_t>(record_.devices.size() - 1);
-    record_.damage.push_back(std::move(error));
+    // What is damaged all over takes no more memory than one place of it.
+    if (!record_.items.empty()) {
+      Item& before = record_.items.back();
+      if (before.kind == Kind::kDamage && before.source == item.source) {
+        before.count += item.count;
+        ++record_.damage.back().places;
+        return;
+      }
+    }
+    record_.damage.push_back({std::move(error), 1});
     record_.items.push_back(item);
   }
 

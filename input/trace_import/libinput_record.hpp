@@ -17,7 +17,7 @@ struct LibinputRecord {
   enum class Kind : std::uint8_t {
     kFrame,   ///< events [begin, begin + count), without the SYN_REPORT
     kReport,  ///< bytes [begin, begin + count) of the hidraw node `source`
-    kDamage,  ///< damage[begin]; count is 1 where a frame of the device went with it
+    kDamage,  ///< damage[begin]; count frames of the device went with it
   };
   struct Item {
     Kind kind = Kind::kFrame;
@@ -29,12 +29,18 @@ struct LibinputRecord {
     std::size_t count = 0;
   };
 
+  /// Places one after the other, of one device.
+  struct Damage {
+    Error first;
+    std::uint64_t places = 0;
+  };
+
   std::vector<TraceDevice> devices;  ///< as the file lists them; index is their position
   std::vector<std::string> hidraw_names;
   std::vector<Item> items;
   std::vector<EvdevEvent> events;
   std::vector<std::uint8_t> bytes;
-  std::vector<Error> damage;
+  std::vector<Damage> damage;
   /// What ended the reading, with everything before it above. Not set: the file is whole.
   std::optional<Error> failure;
 };

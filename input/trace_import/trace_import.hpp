@@ -13,7 +13,8 @@ namespace limn {
 /// kUsbCapture, kLibinputRecord and kMotionCsv, told apart by content, never by name.
 ///
 /// What comes out is what open_trace() gives. USB captures are read as a stream; a libinput
-/// recording is read whole before its first event, since one file may hold kMaxLibinputBytes.
+/// recording is read whole before its first event, in up to some ten times its size, which is at
+/// most kMaxLibinputBytes.
 ///
 /// Error: kIo; kSyntax for an empty file or an unknown format; kUnknown for a capture of something
 /// other than USB and for another version of libinput's format; kMissing where this limn was built

@@ -86,6 +86,7 @@ struct LiveArguments {
   std::optional<Backend> backend;      ///< none: hidraw where it may be read, else what can be
   bool initialize = true;
   bool from_spacenavd = true;  ///< false: its motions are of no use
+  bool waits = false;          ///< for the first one, where none is here yet
 };
 
 struct MonitorArguments {
@@ -124,7 +125,7 @@ struct PlotArguments {
 
 struct SpnavServerArguments {
   LiveArguments live;
-  DragOptions drag;
+  DragOptions drag;      ///< but for its speeds
   std::string socket;    ///< --socket; empty: where this user may
   TraceArguments trace;  ///< --replay; no path: live devices
   double speed = 1;

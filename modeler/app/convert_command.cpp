@@ -19,13 +19,17 @@
 namespace limn::app {
 namespace {
 
-/// Takes the events of a recording in, and writes them with times from the first one on: reports as
-/// a hid-recorder file; kernel frames each device for itself as an evemu file, which only counts
-/// where no report came at all.
+/// Takes the events of a recording in, and writes them with times from the first one that is kept:
+/// reports as a hid-recorder file; kernel frames each device for itself as an evemu file, which
+/// only counts where no report came at all, so that it is kept until then. An evemu file stays one,
+/// and is written as it comes.
 class Conversion {
  public:
-  Conversion(ByteSink& reports, std::optional<DeviceIndex> wanted)
-      : reports_(reports), wanted_(wanted) {}
+  Conversion(ByteSink& output, TraceFormat format, std::optional<DeviceIndex> wanted)
+      : output_(output),
+        reports_(output),
+        stays_evemu_(format == TraceFormat::kEvemu),
+        wanted_(wanted) {}
 
   /// Of devices that may report only what is known; they are written when they first report.
   Expected<void> operator()(const DeviceDescribed& described) {
@@ -52,7 +56,6 @@ class Conversion {
 
   Expected<void> operator()(const EvdevFrame& frame) {
     if (!is_wanted(frame.device)) return {};
-    // Told even of what is left out: it sets the start.
     shifted_.assign(frame.events.begin(), frame.events.end());
     for (EvdevEvent& event : shifted_) event.time = since_start(event.time);
     const Timestamp time = since_start(frame.time);
@@ -94,19 +97,19 @@ class Conversion {
   }
   Expected<void> operator()(const TraceEnd&) { return {}; }
 
-  /// Describes what did not report, too. The text of the evemu file, where that is what the
-  /// recording becomes; nothing where the reports are.
+  /// Describes what did not report, too. The text of the evemu file that is still to be written;
+  /// nothing where all is written.
   Expected<std::optional<std::string>> finish() {
     std::vector<const Device*> recorded;
     for (const auto& [index, device] : devices_) {
       if (device.frames != nullptr) recorded.push_back(&device);
     }
-    if (recorded.size() == 1) return recorded[0]->frames->sink.text();
+    if (recorded.size() == 1) return text_of(*recorded[0]->frames);
     if (recorded.size() > 1) return several(recorded);
     const bool silent = report_count_ + frame_count_ == 0;
     if (silent && devices_.size() == 1 && !devices_.begin()->second.description.axes.empty()) {
-      return frames_of(devices_.begin()->second).map([](Frames* frames) {
-        return std::optional<std::string>(frames->sink.text());
+      return frames_of(devices_.begin()->second).map([this](Frames* frames) {
+        return text_of(*frames);
       });
     }
     for (const auto& [index, device] : devices_) {
@@ -144,21 +147,25 @@ class Conversion {
     std::string text;
     for (const DeviceIndex index : reporting_) {
       const TraceDevice& device = devices_.at(index).description;
-      if (!device.report_descriptor.empty() || traits_of(device).kind != DeviceKind::kOther)
+      if (!device.report_descriptor.empty() || traits_of(device).kind != DeviceKind::kOther) {
         continue;
+      }
       char ids[16];
       std::snprintf(ids, sizeof ids, "%04x:%04x", device.vendor, device.product);
       text += "device " + std::to_string(index) + " (" + ids +
-              ") has no report descriptor in it: decode with --salvage, or convert the other with "
-              "--device N\n";
+              ") has no report descriptor in it: decode with --salvage, or give it with "
+              "--descriptor";
+      if (reporting_.size() > 1) text += ", or convert another one with --device N";
+      text += '\n';
     }
     return text;
   }
 
  private:
   struct Frames {
-    StringSink sink;
-    EvemuWriter writer{sink};
+    explicit Frames(ByteSink* direct) : writer(direct != nullptr ? *direct : kept) {}
+    StringSink kept;
+    EvemuWriter writer;
     std::uint64_t count = 0;
   };
   struct Device {
@@ -180,12 +187,16 @@ class Conversion {
   /// The evemu file of a device, begun with its description. Precondition: no report came.
   Expected<Frames*> frames_of(Device& device) {
     if (device.frames == nullptr) {
-      device.frames = std::make_unique<Frames>();
+      device.frames = std::make_unique<Frames>(stays_evemu_ ? &output_ : nullptr);
       if (auto written = device.frames->writer.describe(device.description); !written) {
         return tl::unexpected(written.error());
       }
     }
     return device.frames.get();
+  }
+
+  std::optional<std::string> text_of(const Frames& frames) const {
+    return stays_evemu_ ? std::nullopt : std::optional<std::string>(frames.kept.text());
   }
 
   /// Writes the device's description where it is news.
@@ -207,7 +218,9 @@ class Conversion {
     return fail(ErrorCode::kLimit, "", std::move(what), "choose one with --device N");
   }
 
+  ByteSink& output_;
   HidRecorderWriter reports_;
+  bool stays_evemu_;
   std::optional<DeviceIndex> wanted_;
   std::map<DeviceIndex, Device> devices_;
   std::set<DeviceIndex> reporting_;
@@ -252,7 +265,7 @@ Outcome run_convert(const ConvertArguments& arguments) {
   if (!file) return tl::unexpected(std::move(file.error()));
 
   Output output(*file);
-  Conversion conversion(output, arguments.device);
+  Conversion conversion(output, (*reader)->format(), arguments.device);
   for (;;) {
     auto event = (*reader)->next();
     if (!event) return in_file(input, Expected<void>(tl::unexpected(std::move(event.error()))));
@@ -271,7 +284,7 @@ Outcome run_convert(const ConvertArguments& arguments) {
   auto written =
       (*evemu ? file->write(**evemu) : output.flush()).and_then([&] { return file->commit(); });
   if (!written) return in_file(arguments.output, std::move(written));
-  const bool is_evemu = evemu->has_value();
+  const bool is_evemu = evemu->has_value() || (*reader)->format() == TraceFormat::kEvemu;
   std::fprintf(stderr, "%s to %s: %s\n", std::string(name((*reader)->format())).c_str(),
                is_evemu ? "evemu" : "hid-recorder", conversion.summary(is_evemu).c_str());
   std::fputs(conversion.unexplained().c_str(), stderr);

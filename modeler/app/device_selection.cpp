@@ -78,6 +78,14 @@ std::vector<ListedDevice> devices_named(const std::vector<ListedDevice>& listed,
                                       : std::vector<ListedDevice>();
 }
 
+std::vector<ListedDevice> without_spacenavd(std::vector<ListedDevice> listed) {
+  listed.erase(
+      std::remove_if(listed.begin(), listed.end(),
+                     [](const ListedDevice& one) { return one.backend == Backend::kSpnav; }),
+      listed.end());
+  return listed;
+}
+
 std::vector<ListedDevice> pen_interfaces(std::vector<ListedDevice> rows) {
   const auto keep = [&rows](auto is_pen) {
     std::vector<ListedDevice> kept;

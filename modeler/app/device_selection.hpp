@@ -33,6 +33,9 @@ std::vector<ListedDevice> devices_named(const std::vector<ListedDevice>& listed,
                                         std::optional<Backend> backend,
                                         DeviceKind kind = DeviceKind::kPen);
 
+/// Without the rows of spacenavd, which a file may stand for that nobody listens to.
+std::vector<ListedDevice> without_spacenavd(std::vector<ListedDevice> listed);
+
 /// Of the interfaces of one USB device the pen's: the one of its initialisation, else one whose
 /// reports are a pen's; all where neither is known.
 std::vector<ListedDevice> pen_interfaces(std::vector<ListedDevice> rows);

@@ -92,14 +92,15 @@ tl::expected<std::vector<ListedDevice>, Failure> choose(const std::vector<Listed
   return std::move(choice->rows);
 }
 
-/// A failure where spacenavd has a device, and nobody else may read it.
-Outcome refuse_spacenavds(const std::vector<ListedDevice>& rows) {
-  const auto found = std::find_if(rows.begin(), rows.end(), [](const ListedDevice& one) {
+/// Where nothing could be opened and a file of spacenavd's is there, that may be why.
+Failure suspecting_spacenavd(Failure failure, const std::vector<ListedDevice>& listed) {
+  const auto found = std::find_if(listed.begin(), listed.end(), [](const ListedDevice& one) {
     return one.backend == Backend::kSpnav;
   });
-  if (found == rows.end()) return {};
-  return no_device(ErrorCode::kIo, "spacenavd (" + found->node + ") has the 3D mouse to itself",
-                   "stop it (systemctl stop spacenavd), or see 'limn doctor' for permission");
+  if (found != listed.end()) {
+    failure.error.remedy += "; where spacenavd (" + found->node + ") has it, stop that";
+  }
+  return failure;
 }
 
 /// Opens a device that has come; nothing where it cannot be, which standard error says.
@@ -135,8 +136,13 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArg
   auto heard = listen_for_devices();  // before listing, so that nothing is missed in between
   auto listed = in_file("", live.backend ? list_devices_of(*live.backend) : list_devices());
   if (!listed) return tl::unexpected(std::move(listed.error()));
+  const std::vector<ListedDevice> all = *listed;
+  if (!live.from_spacenavd) listed = without_spacenavd(*std::move(listed));
   auto chosen = devices_named(*listed, id, live.backend, live.kind);
-  if (chosen.empty()) {
+  const bool waits = live.waits && heard;
+  if (chosen.empty() && waits) {
+    print_error(what_is_missing(live, id.has_value()) + " yet; it is waited for");
+  } else if (chosen.empty()) {
     return no_device(ErrorCode::kMissing, what_is_missing(live, id.has_value()),
                      live.backend == Backend::kSpnav ? "start spacenavd, or name its socket"
                                                      : "plug it in and see 'limn devices'");
@@ -145,12 +151,12 @@ tl::expected<std::unique_ptr<LiveReader>, Failure> open_live_input(const LiveArg
     auto rows = choose(chosen, *listed);
     if (!rows) return tl::unexpected(std::move(rows.error()));
     chosen = *std::move(rows);
-    if (!live.from_spacenavd) {
-      if (auto free = refuse_spacenavds(chosen); !free) return tl::unexpected(free.error());
-    }
   }
   auto opened = open_all(chosen, initialize);
-  if (!opened) return tl::unexpected(std::move(opened.error()));
+  if (!opened) {
+    if (live.from_spacenavd) return tl::unexpected(std::move(opened.error()));
+    return tl::unexpected(suspecting_spacenavd(std::move(opened.error()), all));
+  }
   // Without udev what goes away stays away; everything else still works.
   std::unique_ptr<Hotplug> hotplug;
   const LaterDevices later(live.backend, id, std::move(chosen), live.kind);

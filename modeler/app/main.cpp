@@ -82,22 +82,25 @@ void add_live(CLI::App& command, LiveArguments& live) {
       "Read devices as they are, without the requests that set them up");
 }
 
-/// How 3D mice become velocities.
-void add_drag(CLI::App& command, DragOptions& drag) {
+/// How 3D mice become velocities: in parts of that at full deflection, or, with `speeds`, in mm/s
+/// and rad/s.
+void add_drag(CLI::App& command, DragOptions& drag, bool speeds = true) {
   const auto option = [&command](const char* name, const char* type, auto parse,
                                  const char* description) {
     return add_value(command, name, parse, description)->type_name(type)->group("3D mice");
   };
-  option(
-      "--mm-per-s", "V",
-      [&drag](const std::string& text) { return parse_full_speed(text, drag.mm_per_s); },
-      "Velocity at full deflection")
-      ->default_str("100");
-  option(
-      "--rad-per-s", "W",
-      [&drag](const std::string& text) { return parse_full_speed(text, drag.rad_per_s); },
-      "Angular velocity at full deflection")
-      ->default_str("1");
+  if (speeds) {
+    option(
+        "--mm-per-s", "V",
+        [&drag](const std::string& text) { return parse_full_speed(text, drag.mm_per_s); },
+        "Velocity at full deflection")
+        ->default_str("100");
+    option(
+        "--rad-per-s", "W",
+        [&drag](const std::string& text) { return parse_full_speed(text, drag.rad_per_s); },
+        "Angular velocity at full deflection")
+        ->default_str("1");
+  }
   option(
       "--dead-zone", "F",
       [&drag](const std::string& text) { return parse_fraction(text, 0.9, drag.dead_zone); },
@@ -316,6 +319,7 @@ int run(int argc, char** argv) {
   SpnavServerArguments server;
   server.live.kind = DeviceKind::k3dMouse;
   server.live.from_spacenavd = false;
+  server.live.waits = true;
   CLI::App* server_command = app.add_subcommand(
       "spnav-server", "Serve 3D mice to programs that know spacenavd, in its place");
   add_live(*server_command, server.live);
@@ -339,7 +343,7 @@ int run(int argc, char** argv) {
       ->type_name("X")
       ->default_str("1")
       ->needs(from_recording);
-  add_drag(*server_command, server.drag);
+  add_drag(*server_command, server.drag, false);
   server_command->callback([&] { outcome = run_spnav_server(server); });
 
   try {

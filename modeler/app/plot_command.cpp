@@ -97,9 +97,9 @@ class MousePlot {
     const Drag drag = drag_.push(sample);
     std::array<double, kChannels> values{};
     for (std::size_t i = 0; i < kMotionAxes; ++i) {
-      values[i] = sample.deflection[i];
+      values[i] = sample.deflection[i] - drag_.rest().bias(i);  // as the dead zone lies around it
       values[kMotionAxes + i] = i < 3 ? drag.mm_per_s[i] : drag.rad_per_s[i - 3];
-      noise_ = std::max(noise_, drag_.rest().noise(i));
+      noise_[i] = std::max(noise_[i], drag_.rest().noise(i));
     }
     // As DragVelocity has it: what was not told for longer was held until this report.
     if (last_ && !anew && sample.time - *last_ > DragVelocity::kLongestStep) {
@@ -118,9 +118,6 @@ class MousePlot {
   PlotDevice take(std::string name) && {
     PlotDevice device{
         std::move(name), std::move(track_), "a button pressed", "reports lost", {}, {}};
-    const double dead = std::max(options_.dead_zone, noise_);
-    std::vector<double> levels;
-    if (dead > 0) levels = {-dead, dead};
     const auto panel = [&](const char* title, std::size_t first, bool rotation) {
       const std::array<const char*, 6> labels = {"x", "y", "z", "rx", "ry", "rz"};
       PlotPanel out{title, {}, {}, {}, {}};
@@ -132,8 +129,11 @@ class MousePlot {
     device.panels.push_back(panel("translation, of full deflection", 0, false));
     device.panels.push_back(panel("rotation, of full deflection", 3, true));
     for (PlotPanel& one : device.panels) {
-      one.levels = levels;
-      one.level_label = noise_ > options_.dead_zone ? "noise at rest" : "dead zone";
+      double noise = 0;
+      for (const PlotLine& line : one.lines) noise = std::max(noise, noise_[line.channel]);
+      const double edge = std::max(options_.dead_zone, noise);
+      if (edge > 0) one.levels = {-edge, edge};
+      one.level_label = noise > options_.dead_zone ? "most noise at rest" : "dead zone";
     }
     device.panels.push_back(panel("velocity, mm/s", 6, false));
     device.panels.push_back(panel("angular velocity, rad/s", 9, true));
@@ -154,7 +154,7 @@ class MousePlot {
   PlotPath from_above_;
   PlotPath from_front_;
   Eigen::Vector3d at_ = Eigen::Vector3d::Zero();
-  double noise_ = 0;
+  std::array<double, kMotionAxes> noise_{};
 };
 
 /// "Huion H610 Pro (256c:006e), 2100 samples".

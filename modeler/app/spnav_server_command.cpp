@@ -1,15 +1,26 @@
+#include <poll.h>
+#include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "drivers/devices/device_traits.hpp"
 #include "drivers/devices/motion_spec.hpp"
 #include "drivers/devices/trace_decoder.hpp"
 #include "drivers/spnav_server/spnav_server.hpp"
+#include "drivers/transport/file_handle.hpp"
 #include "drivers/transport/open_device.hpp"
 #include "drivers/transport/paced_reader.hpp"
 #include "input/stroke/drag_sampler.hpp"
@@ -39,8 +50,15 @@ tl::expected<std::string, Failure> choose_socket(const std::string& wanted) {
                 "say where to listen: --socket PATH"}});
 }
 
+/// Also by another name, such as /var/run/spnav.sock.
+bool is_standard(const std::string& socket) {
+  std::error_code error;
+  const auto real = std::filesystem::weakly_canonical(std::filesystem::absolute(socket), error);
+  return !error && real == std::filesystem::weakly_canonical(kStandardSocket, error);
+}
+
 tl::expected<std::unique_ptr<SpnavServer>, Failure> listen(const std::string& socket) {
-  const bool standard = socket == kStandardSocket;
+  const bool standard = is_standard(socket);
   auto server = in_file("", SpnavServer::listen({socket, standard ? kForAll : kForUser}));
   if (!server) return server;
   remove_on_signal(socket);
@@ -50,10 +68,76 @@ tl::expected<std::unique_ptr<SpnavServer>, Failure> listen(const std::string& so
   return server;
 }
 
+/// A clock whose waits end once it is stopped.
+class StoppableClock final : public WaitingClock {
+ public:
+  /// Error: kIo where the system gives no event.
+  static Expected<std::unique_ptr<StoppableClock>> make() {
+    FileHandle event(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+    if (!event) {
+      return fail(ErrorCode::kIo, "",
+                  "the system gives no event: " + std::generic_category().message(errno),
+                  "end other programs");
+    }
+    return std::unique_ptr<StoppableClock>(new StoppableClock(std::move(event)));
+  }
+
+  Timestamp now() noexcept override { return monotonic_clock().now(); }
+  void wait_until(Timestamp time) noexcept override {
+    pollfd stop{event_.get(), POLLIN, 0};
+    for (auto left = time - now(); left > Timestamp::zero() && !stopped_; left = time - now()) {
+      constexpr Timestamp kLast = std::chrono::milliseconds(2);  // poll() rounds
+      if (left <= kLast) return monotonic_clock().wait_until(time);
+      constexpr std::int64_t kMostMs = 60'000;
+      const auto ms = std::chrono::floor<std::chrono::milliseconds>(left - kLast / 2).count();
+      ::poll(&stop, 1, static_cast<int>(std::min<std::int64_t>(ms, kMostMs)));
+    }
+  }
+
+  /// A signal handler may call it.
+  void stop() noexcept {
+    stopped_ = true;
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t written = ::write(event_.get(), &one, sizeof one);
+  }
+  bool is_stopped() const noexcept { return stopped_; }
+
+ private:
+  explicit StoppableClock(FileHandle event) : event_(std::move(event)) {}
+
+  const FileHandle event_;
+  std::atomic<bool> stopped_ = false;
+};
+
+/// A reader that ends when its clock is stopped.
+class StoppableReader final : public TraceReader {
+ public:
+  StoppableReader(std::unique_ptr<TraceReader> reader, const StoppableClock& clock)
+      : reader_(std::move(reader)), clock_(clock) {}
+
+  TraceFormat format() const noexcept override { return reader_->format(); }
+  std::string place() const override { return reader_->place(); }
+  Expected<TraceEvent> next() override {
+    auto event = reader_->next();
+    if (clock_.is_stopped()) return TraceEnd();
+    return event;
+  }
+  Expected<std::optional<TraceEvent>> next_until(Timestamp deadline) override {
+    auto event = reader_->next_until(deadline);
+    if (event && clock_.is_stopped()) event->emplace(std::in_place_type<TraceEnd>);
+    return event;
+  }
+
+ private:
+  std::unique_ptr<TraceReader> reader_;
+  const StoppableClock& clock_;
+};
+
 /// Hands events on, and tells the server of the 3D mice among the devices.
 class TellingReader final : public TraceReader {
  public:
-  TellingReader(TraceReader& reader, SpnavServer& server) : reader_(reader), server_(server) {}
+  TellingReader(TraceReader& reader, SpnavServer& server, bool& any_mouse)
+      : reader_(reader), server_(server), any_mouse_(any_mouse) {}
 
   TraceFormat format() const noexcept override { return reader_.format(); }
   std::string place() const override { return reader_.place(); }
@@ -73,8 +157,8 @@ class TellingReader final : public TraceReader {
     if (const auto* const described = std::get_if<DeviceDescribed>(&event)) {
       const TraceDevice& device = *described->device;
       if (!is_3d_mouse(device)) return;
-      SpnavDevice served{device.index,  device.name,    device.physical_path,
-                         device.vendor, device.product, {}};
+      any_mouse_ = true;
+      SpnavDevice served{device.index, device.name, "", device.vendor, device.product, {}};
       const MotionSpec* const spec = find_motion_spec(device.vendor, device.product);
       constexpr unsigned kUsualButtons = 2;
       served.buttons = spec != nullptr && spec->buttons > 0 ? spec->buttons : kUsualButtons;
@@ -86,23 +170,26 @@ class TellingReader final : public TraceReader {
 
   TraceReader& reader_;
   SpnavServer& server_;
+  bool& any_mouse_;
 };
 
-/// In parts of full deflection.
-SpnavEvents::Six share_of(const Drag& drag, const DragOptions& options) {
-  SpnavEvents::Six share{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    share[i] = drag.mm_per_s[i] / options.mm_per_s;
-    share[i + 3] = drag.rad_per_s[i] / options.rad_per_s;
-  }
-  return share;
+/// Velocities, of full speeds of 1.
+SpnavEvents::Six six_of(const Drag& drag) {
+  SpnavEvents::Six six{};
+  std::copy(drag.mm_per_s.begin(), drag.mm_per_s.end(), six.begin());
+  std::copy(drag.rad_per_s.begin(), drag.rad_per_s.end(), six.begin() + 3);
+  return six;
 }
 
-/// Until the reader's end.
+/// Until the reader's end. Failure: a recording has no 3D mouse.
 Outcome serve(TraceReader& reader, bool salvage, SpnavServer& server,
               const SpnavServerArguments& arguments) {
-  TraceDecoder decoder(std::make_unique<TellingReader>(reader, server), {.salvage = salvage});
-  DragSampler drags(arguments.drag);
+  bool any_mouse = false;
+  TraceDecoder decoder(std::make_unique<TellingReader>(reader, server, any_mouse),
+                       {.salvage = salvage});
+  DragOptions in_parts = arguments.drag;
+  in_parts.mm_per_s = in_parts.rad_per_s = 1;
+  DragSampler drags(in_parts);
   SpnavEvents events(server);
   for (;;) {
     auto sample = decoder.next_any();
@@ -112,11 +199,17 @@ Outcome serve(TraceReader& reader, bool salvage, SpnavServer& server,
     }
     if (std::holds_alternative<std::monostate>(*sample)) break;
     if (const auto* const motion = std::get_if<const MotionSample*>(&*sample)) {
-      events.push(**motion, share_of(drags.push(**motion), arguments.drag));
+      any_mouse = true;
+      events.push(**motion, six_of(drags.push(**motion)));
     }
   }
   events.end();
   std::fprintf(stderr, "%s\n", summarise(decoder.summary()).c_str());
+  if (!any_mouse && !arguments.trace.path.empty()) {
+    return in_file(arguments.trace.path,
+                   Expected<void>(fail(ErrorCode::kMissing, "", "holds no 3D mouse",
+                                       "give a recording of a 3D mouse in use")));
+  }
   return {};
 }
 
@@ -127,7 +220,11 @@ Outcome serve_recording(const SpnavServerArguments& arguments, const std::string
   if (!server) return tl::unexpected(std::move(server.error()));
   while (!(*server)->wait_for_client(std::chrono::hours(1))) {
   }
-  PacedReader paced(std::move(*reader), arguments.speed, monotonic_clock());
+  auto clock = in_file("", StoppableClock::make());
+  if (!clock) return tl::unexpected(std::move(clock.error()));
+  StoppableReader paced(std::make_unique<PacedReader>(std::move(*reader), arguments.speed, **clock),
+                        **clock);
+  const StopOnSignal stop(**clock);
   return serve(paced, arguments.trace.salvage, **server, arguments);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace limn {
 namespace {
@@ -109,9 +110,14 @@ class PlotDrawing {
   void draw(const PlotWay& way, const PlotFrame& frame, const std::string& id) {
     draw_grid(frame, id);
     Path path;
+    bool begins = true;
     for (const Eigen::Vector2d& point : way.points) {
+      if (point.hasNaN()) {
+        begins = true;
+        continue;
+      }
       const Eigen::Vector2d at(frame.x.at(point.x()), frame.y.at(point.y()));
-      path.verbs().empty() ? path.move_to(at) : path.line_to(at);
+      std::exchange(begins, false) ? path.move_to(at) : path.line_to(at);
     }
     if (!way.points.empty()) {
       canvas_.stroke(prefix_ + id + "-line", "line", path, {kLineColors[0], kLineWidth, 0},

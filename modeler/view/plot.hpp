@@ -33,7 +33,7 @@ struct PlotWay {
   std::string title;  ///< "path from above, mm"
   std::string x_label;
   std::string y_label;
-  std::vector<Eigen::Vector2d> points;  ///< y up
+  std::vector<Eigen::Vector2d> points;  ///< y up; NaN: a gap, not first and not last
 };
 
 /// What one device did.

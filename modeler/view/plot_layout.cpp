@@ -31,6 +31,7 @@ constexpr double kMost = 1e12;
 struct Interval {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
+  /// NaN is none.
   void add(double value) {
     low = std::min(low, value);
     high = std::max(high, value);

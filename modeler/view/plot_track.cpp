@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "input/base/expect.hpp"
 
@@ -15,6 +16,11 @@ PlotTrack::Range joined(const PlotTrack::Range& a, const PlotTrack::Range& b) {
   if (std::isnan(b.first)) return a;
   return {a.first, std::min(a.low, b.low), std::max(a.high, b.high), b.last};
 }
+
+/// Of a path's extent: less than a line's width of the picture.
+constexpr double kShare = 1e-3;
+
+const Eigen::Vector2d kBreak = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
 
 /// A break within a stretch shows no more.
 PlotTrack::Flags joined(const PlotTrack::Flags& a, const PlotTrack::Flags& b) {
@@ -76,25 +82,73 @@ void PlotTrack::merge() {
 }
 
 void PlotPath::push(const Eigen::Vector2d& point) {
+  box_.extend(point);
   last_ = point;
-  if (!points_.empty() && (point - points_.back()).norm() <= apart_) return;
-  points_.push_back(point);
-  while (points_.size() >= kMostPoints) {
-    double mean = 0;
-    for (std::size_t i = 1; i < points_.size(); ++i) mean += (points_[i] - points_[i - 1]).norm();
-    mean /= static_cast<double>(points_.size());
-    apart_ = std::max(2 * apart_, mean);
-    std::size_t kept = 0;
-    for (std::size_t i = 1; i < points_.size(); ++i) {
-      if ((points_[i] - points_[kept]).norm() > apart_) points_[++kept] = points_[i];
-    }
-    points_.resize(kept + 1);
+  if (!points_.empty() && (point - at_).norm() <= apart_) return;
+  add(point);
+  constexpr std::size_t kEnd = 3;  // what points() may add
+  std::size_t most = kMostPoints - kEnd;
+  while (points_.size() > most) {
+    most = kMostPoints / 2;  // the next time shall not be soon
+    thin();
   }
+}
+
+void PlotPath::add(const Eigen::Vector2d& point) {
+  const Eigen::Vector2d from = std::exchange(at_, point);
+  if (points_.empty()) {
+    points_.push_back(point);
+    return;
+  }
+  if (!is_new(from, point)) return;
+  if (points_.back() != from) {  // what leads there is drawn already
+    points_.push_back(kBreak);
+    points_.push_back(from);
+  }
+  points_.push_back(point);
+}
+
+/// Whether no line between the points' cells is drawn yet.
+bool PlotPath::is_new(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  if (cell_ == 0) return true;
+  std::array<double, 2> a = {std::floor(from.x() / cell_), std::floor(from.y() / cell_)};
+  std::array<double, 2> b = {std::floor(to.x() / cell_), std::floor(to.y() / cell_)};
+  if (b < a) std::swap(a, b);
+  return drawn_.insert({a, b}).second;
+}
+
+void PlotPath::thin() {
+  const double apart = kShare * box_.sizes().maxCoeff();
+  if (apart_ < apart) {
+    apart_ = apart;
+  } else {
+    cell_ = std::max({2 * cell_, apart_, std::numeric_limits<double>::min()});
+  }
+  const Eigen::Vector2d end = at_;
+  const bool ends_drawn = points_.back() == end;
+  const std::vector<Eigen::Vector2d> before = std::exchange(points_, {});
+  drawn_.clear();
+  bool breaks = false;
+  for (const Eigen::Vector2d& point : before) {
+    if (point.hasNaN()) {
+      breaks = true;
+    } else if (std::exchange(breaks, false)) {
+      at_ = point;
+    } else if (points_.empty() || (point - at_).norm() > apart_) {
+      add(point);
+    }
+  }
+  if (!ends_drawn) at_ = end;
 }
 
 std::vector<Eigen::Vector2d> PlotPath::points() const {
   std::vector<Eigen::Vector2d> all = points_;
-  if (!all.empty() && all.back() != last_) all.push_back(last_);
+  if (all.empty() || all.back() == last_) return all;
+  if (all.back() != at_) {
+    all.push_back(kBreak);
+    if (at_ != last_) all.push_back(at_);
+  }
+  all.push_back(last_);
   return all;
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -60,19 +63,33 @@ class PlotTrack {
   std::vector<Range> ranges_;  // by bin, then channel
 };
 
-/// A line in the plane without its points that nobody could tell apart: at most kMostPoints.
+/// A line in the plane, as a picture can show it: at most kMostPoints, however long it goes on.
+/// When there are more, those closer together than 1/1000 of the longer side of its extent go, then
+/// what leads again from a cell of a grid that fine to one that it led to already; where that is
+/// not enough, the grid gets coarser. A line stands for one that was pushed, never for a gap.
 class PlotPath {
  public:
   static constexpr std::size_t kMostPoints = 16'384;
 
+  /// Precondition: finite.
   void push(const Eigen::Vector2d& point);
-  /// The last one pushed is among them.
+  /// From the first one pushed to the last; NaN between two that no line joins.
   std::vector<Eigen::Vector2d> points() const;
 
  private:
+  using Cell = std::array<double, 2>;
+
+  void add(const Eigen::Vector2d& point);
+  bool is_new(const Eigen::Vector2d& from, const Eigen::Vector2d& to);
+  void thin();
+
   std::vector<Eigen::Vector2d> points_;
-  Eigen::Vector2d last_ = Eigen::Vector2d::Zero();
-  double apart_ = 0;  // at least, from one to the next
+  Eigen::AlignedBox2d box_;
+  Eigen::Vector2d at_ = Eigen::Vector2d::Zero();    // the newest that counts, drawn or not
+  Eigen::Vector2d last_ = Eigen::Vector2d::Zero();  // pushed
+  double apart_ = 0;                                // at least, from one to the next
+  double cell_ = 0;                                 // side; 0: everything is drawn
+  std::set<std::array<Cell, 2>> drawn_;             // both ways
 };
 
 }  // namespace limn

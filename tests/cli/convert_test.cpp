@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <string>
 
 #include "tests/cli/run_limn.hpp"
@@ -57,6 +58,29 @@ TEST(ConvertTrace, WhatTheKernelDecodedBecomesAnEvemuFileThatDecodes) {
   EXPECT_THAT(decoded.out, HasSubstr("\n0,0,pen,in_range,10,20,"));
 }
 
+TEST(ConvertTrace, AnEvemuFileStaysOne) {
+  const std::string head =
+      "# EVEMU 1.3\nN: Pen\nI: 0003 056a 033c 0111\nB: 03 03 00 00 01 00 00 00 00\n"
+      "A: 00 0 15200 4 0 100\nA: 01 0 9500 4 0 100\nA: 18 0 2047 0 0 0\n";
+  std::string file = head;
+  for (int i = 0; i < 5000; ++i) {  // more than is gathered before it is written
+    char line[128];
+    std::snprintf(line, sizeof line, "E: %d.500000 0003 0000 %d\nE: %d.500000 0000 0000 0\n", 3 + i,
+                  i, 3 + i);
+    file += line;
+  }
+  const CommandRun run = run_limn({"convert-trace", "-", "-o", "-"}, file);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "evemu to evemu: 5000 frames of 1 device in 4999.0 s\n");
+  EXPECT_THAT(run.out, StartsWith("# EVEMU 1.3\nN: Pen\n"));
+  EXPECT_THAT(run.out, HasSubstr("\nE: 0.000000 0003 0000 0\n"));
+  EXPECT_THAT(run.out, testing::EndsWith("\nE: 4999.000000 0003 0000 4999\n"
+                                         "E: 4999.000000 0000 0000 0\n"));
+  const CommandRun silent = run_limn({"convert-trace", "-", "-o", "-"}, head);
+  EXPECT_EQ(silent.exit_code, 0) << silent.err;
+  EXPECT_THAT(silent.out, HasSubstr("A: 18 0 2047 0 0"));
+}
+
 TEST(ConvertTrace, KeepsWhatLimnReadsAlready) {
   const CommandRun run = run_limn({"convert-trace", "-", "-o", "-"}, small_pen_line());
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -87,6 +111,18 @@ TEST(ConvertTrace, DamageLeavesNoFileUnlessItIsSkipped) {
   EXPECT_EQ(salvaged.exit_code, 0) << salvaged.err;
   EXPECT_THAT(salvaged.err, HasSubstr("3 reports of 1 device in 1.2 s, 1 damaged part\n"));
   EXPECT_THAT(read_file(out), HasSubstr("#limn lost 1\n"));
+}
+
+TEST(ConvertTrace, NamesTheDeviceThatNothingExplains) {
+  const std::string first = "D: 1\nI: 3 1234 5678\nE: 0.0 2 07 01\n";
+  const std::string line =
+      "device 1 (1234:5678) has no report descriptor in it: decode with --salvage, or give it with "
+      "--descriptor";
+  EXPECT_THAT(run_limn({"convert-trace", "-", "-o", "-"}, first).err, HasSubstr(line + "\n"));
+  EXPECT_THAT(
+      run_limn({"convert-trace", "-", "-o", "-"}, first + "D: 2\nI: 3 1234 5679\nE: 0.1 2 07 01\n")
+          .err,
+      HasSubstr(line + ", or convert another one with --device N\n"));
 }
 
 TEST(ConvertTrace, StrokesAreNoReports) {

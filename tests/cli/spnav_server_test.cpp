@@ -221,6 +221,57 @@ TEST_F(SpnavServerCommand, ASignalTakesTheSocketAway) {
   }
 }
 
+TEST_F(SpnavServerCommand, ASignalAmidAReplayTellsRestAndReleases) {
+  std::ofstream(trace_) << "D: 0\nN: SpaceNavigator\nI: 3 046d c626\n"
+                           "E: 0.000000 3 03 01 00\n"
+                           "E: 0.010000 7 01 5e 01 00 00 00 00\n"
+                           "E: 0.020000 7 01 5e 01 00 00 00 00\n"
+                           "E: 600.000000 3 03 00 00\n";
+  Serving serving({"--replay", trace_}, socket_);
+  ASSERT_EQ(spnav_open(), 0);
+  spnav_event event{};
+  bool pressed = false;
+  while (!pressed || event.type != SPNAV_EVENT_MOTION) {
+    ASSERT_NE(spnav_wait_event(&event), 0);
+    pressed |= event.type == SPNAV_EVENT_BUTTON && event.button.press != 0;
+  }
+  ASSERT_GT(event.motion.x, 400);
+  const int status = serving.end(SIGINT);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  const std::vector<Event> rest = read_all();
+  ASSERT_GE(rest.size(), 2U);
+  EXPECT_EQ(rest[rest.size() - 2].kind, 'm');
+  EXPECT_EQ(rest[rest.size() - 2].axes, (std::array<int, 6>{}));
+  EXPECT_EQ(rest.back().kind, 'r');
+}
+
+TEST_F(SpnavServerCommand, ARecordingWithout3dMouseIsAnError) {
+  const CommandRun made = run_limn({"simulate", "pen", "--drawing", "star", "-o", trace_});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  Serving serving({"--replay", trace_, "--speed", "1000"}, socket_);
+  ASSERT_EQ(spnav_open(), 0);
+  EXPECT_THAT(read_all(), testing::IsEmpty());
+  EXPECT_THAT(serving.line(), HasSubstr(" samples"));
+  EXPECT_THAT(serving.line(), HasSubstr("holds no 3D mouse; give a recording of a 3D mouse"));
+  const int status = serving.end(0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+}
+
+TEST_F(SpnavServerCommand, AFileOfSpacenavdsIsNoMouse) {
+  std::ofstream(folder_.path() / "stale.sock") << "";
+  ::setenv("SPNAV_SOCKET", (folder_.path() / "stale.sock").c_str(), 1);
+  // Ids that no device has: it waits, and does not say that spacenavd has it.
+  Serving serving({"ffff:ffff"}, socket_);
+  if (serving.told.find("waited for") == std::string::npos) {
+    EXPECT_THAT(serving.told, HasSubstr("no device ffff:ffff is here; plug it in")) << "no udev";
+    return;
+  }
+  EXPECT_EQ(serving.told, "limn: no device ffff:ffff is here yet; it is waited for\n");
+  EXPECT_THAT(serving.line(), HasSubstr("listening on " + socket_));
+  const int status = serving.end(SIGTERM);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
 TEST_F(SpnavServerCommand, LeavesAnotherServersSocketAlone) {
   simulate("push");
   Serving serving({"--replay", trace_}, socket_);
@@ -238,6 +289,9 @@ TEST_F(SpnavServerCommand, SaysWhatIsWrong) {
   EXPECT_EQ(of_spacenavd.exit_code, 2);
   EXPECT_THAT(of_spacenavd.err, HasSubstr("what spacenavd serves needs no other server"));
   EXPECT_EQ(run_limn({"spnav-server", "--speed", "2"}).exit_code, 2);
+  for (const char* speed : {"--mm-per-s", "--rad-per-s"}) {  // would change nothing
+    EXPECT_EQ(run_limn({"spnav-server", speed, "50", "--replay", trace_}).exit_code, 2);
+  }
   EXPECT_EQ(run_limn({"spnav-server", "046d:c626", "--replay", trace_}).exit_code, 2);
   const CommandRun missing =
       run_limn({"spnav-server", "--replay", "/nowhere.hid", "--socket", socket_});

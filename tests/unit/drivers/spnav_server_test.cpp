@@ -237,6 +237,16 @@ TEST_F(SpnavServerTest, ClosesWhatIsNoClientAndGoesOn) {
   EXPECT_EQ(next().type, SPNAV_EVENT_MOTION);
 }
 
+TEST_F(SpnavServerTest, AClientThatIsGoneIsNoneToStartFor) {
+  listen();
+  const std::array<std::int32_t, 9> hello_and_nonsense = {0x7FAA5501, 1};
+  const RawClient hostile(path_);
+  hostile.write(
+      {reinterpret_cast<const char*>(hello_and_nonsense.data()), sizeof hello_and_nonsense});
+  ASSERT_TRUE(hostile.is_ended());
+  EXPECT_FALSE(server_->wait_for_client(0ms));
+}
+
 TEST_F(SpnavServerTest, LetsClientsBeyondTheMostWait) {
   listen();
   std::list<RawClient> clients;

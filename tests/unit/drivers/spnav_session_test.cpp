@@ -190,6 +190,31 @@ TEST(SpnavSession, TellsTheEndOfAMotionThoughTheMaskHasNoneAnyMore) {
   EXPECT_THAT(taken(session), ElementsAre(ElementsAre(0, 0, 0, 0, 0, 0, 0, 8)));
 }
 
+TEST(SpnavSession, TellsReleasesThoughTheMaskHasNoButtonsAnyMore) {
+  SpnavSession session = greeted();
+  session.button(3, true);
+  EXPECT_THAT(taken(session), ElementsAre(ElementsAre(1, 3)));
+  EXPECT_TRUE(write(session, {spnav::kTag | spnav::kSetEventMask, spnav::kMotions}));
+  EXPECT_EQ(taken(session).size(), 1U);
+  session.button(4, true);
+  session.button(3, false);
+  EXPECT_THAT(taken(session), ElementsAre(ElementsAre(2, 3)));
+  session.button(4, false);
+  EXPECT_TRUE(session.output().empty()) << "what was not pressed is not released";
+}
+
+TEST(SpnavSession, TellsNoReleaseOfWhatWasPressedBeforeTheMaskHadButtons) {
+  SpnavSession session = greeted();
+  EXPECT_TRUE(write(session, {spnav::kTag | spnav::kSetEventMask, spnav::kMotions}));
+  EXPECT_EQ(taken(session).size(), 1U);
+  session.button(3, true);
+  session.button(3, false);
+  EXPECT_TRUE(write(session, {spnav::kTag | spnav::kSetEventMask, spnav::kButtons}));
+  EXPECT_EQ(taken(session).size(), 1U);
+  session.button(5, true);
+  EXPECT_THAT(taken(session), ElementsAre(ElementsAre(1, 5)));
+}
+
 TEST(SpnavSession, GivesASlowClientTheNewestMotion) {
   SpnavSession session = greeted();
   for (int i = 1; i <= 1000; ++i) session.motion(motion_of(i));

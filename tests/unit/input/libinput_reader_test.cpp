@@ -148,6 +148,18 @@ INSTANTIATE_TEST_SUITE_P(
         Damaged{"  - hid:\n      time: [1]\n      hidraw0: [1]\n", "seconds and microseconds"},
         Damaged{"  - hid:\n      time: [1, 0]\n      hidraw0: [256]\n", "beyond 255"}));
 
+TEST(LibinputReader, DamageAllOverIsToldOnceAndCounted) {
+  LIMN_NEEDS_YAML();
+  std::string text = kHead + kPen + kFrame;
+  for (int i = 0; i < 100; ++i) text += "  - evdev:\n    - [0, 9, 3, 0, 5]\n";
+  text += "  - evdev:\n    - [0, 30, 0, 0, 0]\n";
+  const Reading salvaged = read(text, true);
+  EXPECT_EQ(salvaged.order, "dfxf.");
+  ASSERT_EQ(salvaged.damage.size(), 1U);
+  EXPECT_THAT(salvaged.damage[0].what, HasSubstr("no SYN_REPORT"));
+  EXPECT_THAT(salvaged.damage[0].what, HasSubstr("(100 damages skipped)"));
+}
+
 TEST(LibinputReader, ATornFileEndsAfterWhatIsWhole) {
   LIMN_NEEDS_YAML();
   const std::string torn = kHead + kPen + kFrame + "  - evdev:\n    - [  0,     10,   3";

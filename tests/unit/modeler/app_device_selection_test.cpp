@@ -101,6 +101,14 @@ TEST(DevicesNamed, AreOfTheKindThatIsWanted) {
   EXPECT_FALSE(later.wants(row("pen", "usb-1/input0")));
 }
 
+TEST(WithoutSpacenavd, LeavesTheOthersToChooseFrom) {
+  const auto rows = without_spacenavd({spacenavd(), row("a", "usb-1/input0"), spacenavd()});
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].node, "a");
+  EXPECT_THAT(devices_named(without_spacenavd({spacenavd()}), {}, {}, DeviceKind::k3dMouse),
+              IsEmpty());
+}
+
 TEST(LaterDevices, KnowsTheVeryDeviceFromItsTwin) {
   const LaterDevices later({}, parse_device_id("1209:2:1"), {row("b", "usb-2/input0")});
   EXPECT_TRUE(later.wants(row("c", "usb-2/input0"))) << "under another node";

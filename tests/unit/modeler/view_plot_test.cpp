@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "modeler/view/plot.hpp"
 #include "modeler/view/plot_layout.hpp"
@@ -109,6 +111,58 @@ TEST(PlotPath, KeepsItsShapeInBoundedMemory) {
   for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
   EXPECT_NEAR(length, 200 * M_PI, 0.01);
   EXPECT_NEAR((points.back() - Eigen::Vector2d(100, 0)).norm(), 0, 1e-9);
+}
+
+/// The farthest from a circle around 0 that a line of the path gets.
+double farthest_from_circle(const std::vector<Eigen::Vector2d>& points, double radius) {
+  double farthest = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (points[i - 1].hasNaN() || points[i].hasNaN()) continue;
+    for (const double t : {0.0, 0.5, 1.0}) {
+      const Eigen::Vector2d at = (1 - t) * points[i - 1] + t * points[i];
+      farthest = std::max(farthest, std::abs(at.norm() - radius));
+    }
+  }
+  return farthest;
+}
+
+TEST(PlotPath, IsNoTangleOfChordsHoweverOftenItGoesRound) {
+  PlotPath path;
+  constexpr double kRadiusMm = 40;
+  constexpr double kStep = 0.031;  // radians; a lap is no whole number of them
+  double angle = 0;
+  for (; angle < 2 * M_PI * 1000; angle += kStep) {
+    path.push({kRadiusMm * std::cos(angle), kRadiusMm * std::sin(angle)});
+  }
+  angle -= kStep;
+  const auto points = path.points();
+  EXPECT_LE(points.size(), PlotPath::kMostPoints);
+  EXPECT_LT(farthest_from_circle(points, kRadiusMm), 0.5);
+  // No gap in the circle, either.
+  std::vector<bool> covered(360);
+  for (const Eigen::Vector2d& point : points) {
+    if (point.hasNaN()) continue;
+    const double degrees = std::atan2(point.y(), point.x()) * 180 / M_PI;
+    covered[static_cast<std::size_t>(degrees + 360) % 360] = true;
+  }
+  EXPECT_EQ(std::count(covered.begin(), covered.end(), true), 360);
+  EXPECT_NEAR((points.front() - Eigen::Vector2d(kRadiusMm, 0)).norm(), 0, 1e-9);
+  const Eigen::Vector2d end(kRadiusMm * std::cos(angle), kRadiusMm * std::sin(angle));
+  EXPECT_NEAR((points.back() - end).norm(), 0, 1e-9);
+}
+
+TEST(PlotPath, OfAnAreaThatItFillsStaysBounded) {
+  PlotPath path;
+  std::uint64_t state = 1;
+  const auto random = [&state] {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<double>(state >> 40);
+  };
+  for (int i = 0; i < 100'000; ++i) {
+    path.push({random(), random()});
+    path.push({0, i % 2 == 0 ? 0.0 : 1e-320});
+  }
+  EXPECT_LE(path.points().size(), PlotPath::kMostPoints);
 }
 
 PlotDevice device_of(const std::vector<double>& values) {
