@@ -45,6 +45,22 @@ struct Client {
   bool gone = false;
 };
 
+/// Signals are left to the caller's threads, whose handlers may use what they guard.
+class BlockedSignals {
+ public:
+  BlockedSignals() {
+    sigset_t all;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~BlockedSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  BlockedSignals(const BlockedSignals&) = delete;
+  BlockedSignals& operator=(const BlockedSignals&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
 /// Sends what there is and the socket takes, a message at a time: the kernel takes each whole or
 /// not at all, and libspnav counts on whole ones.
 void flush(Client& client) {
@@ -82,19 +98,9 @@ class SpnavServer::Serving {
   Serving(const Serving&) = delete;
   Serving& operator=(const Serving&) = delete;
 
-  /// Signals are left to the caller's threads, whose handlers may use what they guard.
   void start() {
-    sigset_t all;
-    sigset_t before;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before);
-    try {
-      thread_ = std::thread([this] { run(); });
-    } catch (...) {
-      ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-      throw;
-    }
-    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    const BlockedSignals blocked;  // in the thread, which inherits that
+    thread_ = std::thread([this] { run(); });
   }
 
   template <class Tell>

@@ -1,12 +1,8 @@
-#include <poll.h>
-#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -20,7 +16,6 @@
 #include "drivers/devices/motion_spec.hpp"
 #include "drivers/devices/trace_decoder.hpp"
 #include "drivers/spnav_server/spnav_server.hpp"
-#include "drivers/transport/file_handle.hpp"
 #include "drivers/transport/open_device.hpp"
 #include "drivers/transport/paced_reader.hpp"
 #include "input/stroke/drag_sampler.hpp"
@@ -68,44 +63,20 @@ tl::expected<std::unique_ptr<SpnavServer>, Failure> listen(const std::string& so
   return server;
 }
 
-/// A clock whose waits end once it is stopped.
+/// A clock whose waits end soon after it is stopped.
 class StoppableClock final : public WaitingClock {
  public:
-  /// Error: kIo where the system gives no event.
-  static Expected<std::unique_ptr<StoppableClock>> make() {
-    FileHandle event(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
-    if (!event) {
-      return fail(ErrorCode::kIo, "",
-                  "the system gives no event: " + std::generic_category().message(errno),
-                  "end other programs");
-    }
-    return std::unique_ptr<StoppableClock>(new StoppableClock(std::move(event)));
-  }
-
   Timestamp now() noexcept override { return monotonic_clock().now(); }
   void wait_until(Timestamp time) noexcept override {
-    pollfd stop{event_.get(), POLLIN, 0};
-    for (auto left = time - now(); left > Timestamp::zero() && !stopped_; left = time - now()) {
-      constexpr Timestamp kLast = std::chrono::milliseconds(2);  // poll() rounds
-      if (left <= kLast) return monotonic_clock().wait_until(time);
-      constexpr std::int64_t kMostMs = 60'000;
-      const auto ms = std::chrono::floor<std::chrono::milliseconds>(left - kLast / 2).count();
-      ::poll(&stop, 1, static_cast<int>(std::min<std::int64_t>(ms, kMostMs)));
-    }
+    constexpr Timestamp kLook = std::chrono::milliseconds(50);
+    while (!stopped_ && now() < time) monotonic_clock().wait_until(std::min(time, now() + kLook));
   }
 
   /// A signal handler may call it.
-  void stop() noexcept {
-    stopped_ = true;
-    const std::uint64_t one = 1;
-    [[maybe_unused]] const ssize_t written = ::write(event_.get(), &one, sizeof one);
-  }
+  void stop() noexcept { stopped_ = true; }
   bool is_stopped() const noexcept { return stopped_; }
 
  private:
-  explicit StoppableClock(FileHandle event) : event_(std::move(event)) {}
-
-  const FileHandle event_;
   std::atomic<bool> stopped_ = false;
 };
 
@@ -220,11 +191,10 @@ Outcome serve_recording(const SpnavServerArguments& arguments, const std::string
   if (!server) return tl::unexpected(std::move(server.error()));
   while (!(*server)->wait_for_client(std::chrono::hours(1))) {
   }
-  auto clock = in_file("", StoppableClock::make());
-  if (!clock) return tl::unexpected(std::move(clock.error()));
-  StoppableReader paced(std::make_unique<PacedReader>(std::move(*reader), arguments.speed, **clock),
-                        **clock);
-  const StopOnSignal stop(**clock);
+  StoppableClock clock;
+  StoppableReader paced(std::make_unique<PacedReader>(std::move(*reader), arguments.speed, clock),
+                        clock);
+  const StopOnSignal stop(clock);
   return serve(paced, arguments.trace.salvage, **server, arguments);
 }
 
