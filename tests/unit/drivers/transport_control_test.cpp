@@ -68,7 +68,7 @@ TEST(UsbControl, AnIdOfZeroDoesNotTravel) {
   EXPECT_TRUE(control.set_output(Bytes{0, 1, 2}));
   EXPECT_EQ(control.request.value, 0x0200);
   EXPECT_THAT(control.data, ElementsAre(1, 2));
-  EXPECT_THAT(*control.get_feature(0, 2), ElementsAre(0, 9, 9));
+  EXPECT_THAT(*control.get_feature(0, 3), ElementsAre(0, 9, 9)) << "three with the ID";
   EXPECT_EQ(control.request.value, 0x0300);
   EXPECT_THAT(*control.get_feature(5, 2), ElementsAre(9, 9)) << "the device sends it itself";
 }
