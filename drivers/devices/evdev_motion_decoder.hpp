@@ -7,7 +7,6 @@
 #include <span>
 
 #include "drivers/devices/motion_spec.hpp"
-#include "input/base/error.hpp"
 #include "input/sample/motion_sample.hpp"
 #include "input/trace/trace.hpp"
 
