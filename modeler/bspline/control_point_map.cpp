@@ -174,6 +174,19 @@ ControlPointMap::ControlPointMap(int columns, int width, std::vector<int> first,
   LIMN_EXPECT(coefficients_.size() == first_.size() * static_cast<std::size_t>(width_));
 }
 
+void map_layers(const ControlPointMap& map, std::size_t layer, const double* in,
+                double* out) noexcept {
+  for (int r = 0; r < map.rows(); ++r, out += layer) {
+    const auto row = map.row(r);
+    const double* from = in + static_cast<std::size_t>(map.first(r)) * layer;
+    for (std::size_t i = 0; i < layer; ++i) out[i] = row[0] * from[i];
+    for (std::size_t k = 1; k < row.size(); ++k) {
+      from += layer;
+      for (std::size_t i = 0; i < layer; ++i) out[i] += row[k] * from[i];
+    }
+  }
+}
+
 ControlPointMap compose(const ControlPointMap& outer, const ControlPointMap& inner) {
   LIMN_EXPECT(outer.columns() == inner.rows());
   int width = 1;
@@ -241,6 +254,22 @@ Expected<KnotRefinement> elevate_degree(const KnotVector& knots, int by) {
     if (!to) return tl::unexpected(std::move(to.error()));
     KnotRefinement once = elevate_once(out.knots, *to);
     out = {std::move(once.knots), compose(once.map, out.map)};
+  }
+  return out;
+}
+
+std::vector<double> bezier_extraction(const KnotVector& knots, int span) {
+  const int p = knots.degree();
+  const double begin = knots.values()[static_cast<std::size_t>(span)];
+  const double end = knots.values()[static_cast<std::size_t>(span) + 1];
+  std::vector<double> out;
+  out.reserve(static_cast<std::size_t>((p + 1) * (p + 1)));
+  std::array<double, kMostBasis> arguments;
+  for (int r = 0; r <= p; ++r) {
+    std::fill_n(arguments.begin(), p - r, begin);
+    std::fill_n(arguments.begin() + (p - r), r, end);
+    const Row row = blossom(knots, span, {arguments.data(), static_cast<std::size_t>(p)});
+    out.insert(out.end(), row.begin(), row.begin() + p + 1);
   }
   return out;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -32,28 +33,17 @@ class ControlPointMap {
             static_cast<std::size_t>(width_)};
   }
 
-  /// Maps the line in[0], in[stride], .. (columns() of them) to out[0], out[stride], .. (rows()).
-  /// The ranges must not overlap. Point needs Point * double and Point + Point.
-  template <class Point>
-  void apply(const Point* in, Point* out, std::ptrdiff_t stride = 1) const {
-    for (int r = 0; r < rows(); ++r) {
-      const auto coefficients = row(r);
-      const Point* p = in + stride * first(r);
-      Point sum = *p * coefficients[0];
-      for (std::size_t k = 1; k < coefficients.size(); ++k) {
-        p += stride;
-        sum = sum + *p * coefficients[k];
-      }
-      out[stride * r] = sum;
-    }
-  }
-
  private:
   int columns_;
   int width_;
   std::vector<int> first_;
   std::vector<double> coefficients_;
 };
+
+/// Maps layers of `layer` doubles, one after another: out layer r = sum_k a_{r,k} in layer
+/// first(r) + k. In holds map.columns() layers, out gets map.rows(); they must not overlap.
+void map_layers(const ControlPointMap& map, std::size_t layer, const double* in,
+                double* out) noexcept;
 
 /// The map that applies `inner` first, then `outer`.
 /// Precondition: outer.columns() == inner.rows().
@@ -76,5 +66,13 @@ Expected<KnotRefinement> insert_knots(const KnotVector& knots, std::span<const d
 /// multiplicity, so that continuity stays. [PT97 ch. 5.5]
 /// Error: kOutOfRange where the degree would pass KnotVector::kMaxDegree.
 Expected<KnotRefinement> elevate_degree(const KnotVector& knots, int by);
+
+/// The Bézier control points of one span from the control points that shape it:
+///
+///     Q_r = sum_k out[r (p + 1) + k] P_{span-p+k},    0 <= r, k <= p.
+///
+/// Rows are convex combinations, so hulls only shrink. Precondition: span from find_span(). O(p^3).
+/// [PT97 ch. 5.3]
+std::vector<double> bezier_extraction(const KnotVector& knots, int span);
 
 }  // namespace limn

@@ -1,13 +1,13 @@
 #include "modeler/bspline/knot_vector.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "input/base/expect.hpp"
+#include "modeler/bspline/basis.hpp"
 
 namespace limn {
 namespace {
@@ -59,26 +59,37 @@ Expected<void> check_values(int degree, const std::vector<double>& values, Closu
   return {};
 }
 
-/// out[k] = N_{s-q+k,q}(u) for k <= q, where knot points at u_s. [PT97 A2.2]
-void basis_of_degree(const double* knot, int q, double u, std::span<double> out) noexcept {
-  std::array<double, KnotVector::kMaxDegree + 1> left;
-  std::array<double, KnotVector::kMaxDegree + 1> right;
-  out[0] = 1;
-  for (int j = 1; j <= q; ++j) {
-    const auto sj = static_cast<std::size_t>(j);
-    left[sj] = u - knot[1 - j];
-    right[sj] = knot[j] - u;
-    double saved = 0;
-    for (std::size_t r = 0; r < sj; ++r) {
-      const double share = out[r] / (right[r + 1] + left[sj - r]);
-      out[r] = saved + right[r + 1] * share;
-      saved = left[sj - r] * share;
-    }
-    out[sj] = saved;
+}  // namespace
+
+std::shared_ptr<const KnotVector::Table> KnotVector::make_table(int degree,
+                                                                std::vector<double> values) {
+  auto table = std::make_shared<Table>();
+  table->values = std::move(values);
+  const double* knot = table->values.data();
+  const int end = static_cast<int>(table->values.size()) - degree - 1;
+  int spans = 0;
+  for (int s = degree; s < end; ++s) spans += knot[s] < knot[s + 1] ? 1 : 0;
+  const double length = knot[end] - knot[degree];
+  table->cells_per_unit = spans / length;
+  if (!std::isfinite(table->cells_per_unit)) table->cells_per_unit = 0;
+  table->last_span.assign(static_cast<std::size_t>(spans) + 1, -1);
+  for (int s = degree; s < end; ++s) {
+    if (!(knot[s] < knot[s + 1])) continue;
+    const auto cell = static_cast<std::size_t>((knot[s] - knot[degree]) * table->cells_per_unit);
+    const std::size_t next = std::min(cell, static_cast<std::size_t>(spans) - 1) + 1;
+    table->last_span[next] = s;  // ascending: the last one in the cell stays
+    if (table->last_span[0] < 0) table->last_span[0] = s;
   }
+  for (std::size_t c = 1; c < table->last_span.size(); ++c) {
+    table->last_span[c] = std::max(table->last_span[c], table->last_span[c - 1]);
+  }
+  return table;
 }
 
-}  // namespace
+KnotVector::KnotVector() {
+  static const std::shared_ptr<const Table> constant = make_table(0, {0.0, 1.0});
+  table_ = constant;
+}
 
 Expected<KnotVector> KnotVector::make(int degree, std::vector<double> values, Closure closure) {
   const int least_degree = closure == Closure::kPeriodic ? 1 : 0;
@@ -156,14 +167,15 @@ Expected<KnotVector> KnotVector::rotated(int shift) const {
   const int round = basis_count() - degree_;
   LIMN_EXPECT(is_periodic() && shift >= 0 && shift < round);
   const double period = domain_end() - domain_begin();
-  std::vector<double> values;
-  values.reserve(values_.size());
-  const int count = static_cast<int>(values_.size());
+  const std::vector<double>& old = values();
+  std::vector<double> rotated;
+  rotated.reserve(old.size());
+  const int count = static_cast<int>(old.size());
   for (int i = 0; i < count; ++i) {
     const int turns = i + shift < count ? 0 : 1 + (i + shift - count) / round;
-    values.push_back(values_[static_cast<std::size_t>(i + shift - turns * round)] + turns * period);
+    rotated.push_back(old[static_cast<std::size_t>(i + shift - turns * round)] + turns * period);
   }
-  return make(degree_, std::move(values), Closure::kPeriodic);
+  return make(degree_, std::move(rotated), Closure::kPeriodic);
 }
 
 double KnotVector::clamp(double u) const noexcept {
@@ -178,53 +190,41 @@ double KnotVector::clamp(double u) const noexcept {
 }
 
 int KnotVector::find_span(double u) const noexcept {
-  const auto begin = values_.begin() + degree_;
-  const auto end = values_.begin() + basis_count();
-  if (!(u < *end)) {  // the last non-empty span, for the left-hand limit; NaN lands here too
-    return static_cast<int>(std::lower_bound(begin, end, *end) - values_.begin()) - 1;
+  const double* knot = values().data();
+  const double begin = domain_begin();
+  const Table& table = *table_;
+  if (!(u < domain_end()))
+    return table.last_span.back();  // the left-hand limit; NaN lands here too
+  // Rounding cannot put a parameter into another cell than its knots expect: subtraction and
+  // multiplication are monotone.
+  const auto cell = u > begin ? static_cast<std::size_t>((u - begin) * table.cells_per_unit) : 0;
+  const std::size_t low = std::min(cell, table.last_span.size() - 2);
+  int first = table.last_span[low];
+  int last = table.last_span[low + 1];
+  while (first < last) {  // the last knot <= u of u_first .. u_last
+    const int middle = first + (last - first + 1) / 2;
+    if (knot[middle] <= u) {
+      first = middle;
+    } else {
+      last = middle - 1;
+    }
   }
-  const auto above = std::upper_bound(begin + 1, end, u);
-  return static_cast<int>(above - values_.begin()) - 1;
+  return first;
 }
 
 void KnotVector::basis(int span, double u, std::span<double> out) const noexcept {
   LIMN_EXPECT(out.size() > static_cast<std::size_t>(degree_));
-  basis_of_degree(values_.data() + span, degree_, u, out);
+  bspline_detail::basis(values().data() + span, degree_, u, out.data());
 }
 
 void KnotVector::basis_derivatives(int span, double u, int order,
                                    std::span<double> out) const noexcept {
-  const int p = degree_;
-  const auto width = static_cast<std::size_t>(p + 1);
-  LIMN_EXPECT(order >= 0 && out.size() >= width * static_cast<std::size_t>(order + 1));
-  basis(span, u, out);
-  const double* knot = values_.data() + span;
-  // The r-th derivative of N_{.,p} comes from N_{.,p-r} by r steps of
-  // N'_{i,q} = q (N_{i,q-1} / (u_{i+q} - u_i) - N_{i+1,q-1} / (u_{i+q+1} - u_{i+1})).
-  std::array<double, kMaxDegree + 2> lower;
-  for (int r = 1; r <= order; ++r) {
-    const std::span<double> row = out.subspan(width * static_cast<std::size_t>(r), width);
-    if (r > p) {
-      std::fill(row.begin(), row.end(), 0.0);
-      continue;
-    }
-    const int q0 = p - r;
-    lower.fill(0);  // lower[k] = N_{span-q+k,q} while q grows from q0 to p
-    basis_of_degree(knot, q0, u, lower);
-    for (int q = q0 + 1; q <= p; ++q) {
-      for (int k = q; k >= 0; --k) {  // downwards, so that lower[k - 1] is still of degree q - 1
-        const auto sk = static_cast<std::size_t>(k);
-        const double from_left = k > 0 ? lower[sk - 1] / (knot[k] - knot[k - q]) : 0.0;
-        const double from_right = k < q ? lower[sk] / (knot[k + 1] - knot[k + 1 - q]) : 0.0;
-        lower[sk] = q * (from_left - from_right);
-      }
-    }
-    std::copy_n(lower.begin(), width, row.begin());
-  }
+  LIMN_EXPECT(order >= 0 && out.size() >= static_cast<std::size_t>((degree_ + 1) * (order + 1)));
+  bspline_detail::basis_derivatives(values().data() + span, degree_, u, order, out.data());
 }
 
 double KnotVector::greville(int i) const noexcept {
-  const auto at = values_.begin() + i;
+  const auto at = values().begin() + i;
   if (degree_ == 0) return 0.5 * (at[0] + at[1]);
   double sum = 0;
   for (int k = 1; k <= degree_; ++k) sum += at[k] / degree_;  // no overflow for huge knots
@@ -232,12 +232,12 @@ double KnotVector::greville(int i) const noexcept {
 }
 
 int KnotVector::multiplicity(double u) const noexcept {
-  const auto [first, last] = std::equal_range(values_.begin(), values_.end(), u);
+  const auto [first, last] = std::equal_range(values().begin(), values().end(), u);
   return static_cast<int>(last - first);
 }
 
 std::vector<double> KnotVector::breakpoints() const {
-  std::vector<double> out(values_.begin() + degree_, values_.begin() + basis_count() + 1);
+  std::vector<double> out(values().begin() + degree_, values().begin() + basis_count() + 1);
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }

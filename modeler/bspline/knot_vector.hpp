@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -27,13 +28,14 @@ enum class Closure : bool { kOpen, kPeriodic };
 /// points at the end, so that evaluation needs no special case. Multiplicity is at most p, the seam
 /// included, hence value(u_p) = value(u_n).
 ///
-/// A regular value type. Immutable, so any number of threads may read one. Source: [PT97] ch. 2.
+/// A regular value type. Immutable, so any number of threads may read one; copies share the values.
+/// Source: [PT97] ch. 2.
 class KnotVector {
  public:
   static constexpr int kMaxDegree = 25;
 
   /// Degree 0 on [0, 1]: one constant function.
-  KnotVector() = default;
+  KnotVector();
 
   /// Errors: kOutOfRange for the degree, a value that is not finite, decreases, is too close to its
   /// neighbour to divide by, or too high a multiplicity; kPointCount for too few values; kNumeric
@@ -59,16 +61,17 @@ class KnotVector {
   int degree() const noexcept { return degree_; }
   bool is_periodic() const noexcept { return closure_ == Closure::kPeriodic; }
   Closure closure() const noexcept { return closure_; }
-  const std::vector<double>& values() const noexcept { return values_; }
-  int basis_count() const noexcept { return static_cast<int>(values_.size()) - degree_ - 1; }
-  double domain_begin() const noexcept { return values_[static_cast<std::size_t>(degree_)]; }
-  double domain_end() const noexcept { return values_[static_cast<std::size_t>(basis_count())]; }
+  const std::vector<double>& values() const noexcept { return table_->values; }
+  int basis_count() const noexcept { return static_cast<int>(values().size()) - degree_ - 1; }
+  double domain_begin() const noexcept { return values()[static_cast<std::size_t>(degree_)]; }
+  double domain_end() const noexcept { return values()[static_cast<std::size_t>(basis_count())]; }
 
   /// `u` brought into the domain: clamped, or wrapped where periodic (the end itself stays).
   double clamp(double u) const noexcept;
 
   /// The s with u_s <= u < u_{s+1}, degree() <= s < basis_count(); the last non-empty span for
-  /// u >= domain_end(), the first for u < domain_begin(). O(log n). [PT97 A2.1]
+  /// u >= domain_end(), the first for u < domain_begin(). O(1) where spans are about equal, O(log
+  /// n) at worst. [PT97 A2.1]
   int find_span(double u) const noexcept;
 
   /// out[k] = N_{span-p+k,p}(u), the p + 1 functions that do not vanish on `span` (from
@@ -90,15 +93,27 @@ class KnotVector {
   /// The distinct knots of the domain, ascending, both ends included.
   std::vector<double> breakpoints() const;
 
-  friend bool operator==(const KnotVector&, const KnotVector&) = default;
+  friend bool operator==(const KnotVector& a, const KnotVector& b) noexcept {
+    return a.degree_ == b.degree_ && a.closure_ == b.closure_ &&
+           (a.table_ == b.table_ || a.values() == b.values());
+  }
 
  private:
+  /// The domain is cut into equal cells; for a parameter in cell c, find_span() need only look from
+  /// the last span that begins before c to the last that begins in it.
+  struct Table {
+    std::vector<double> values;
+    std::vector<int> last_span;  ///< of cell c - 1 and before, at c; one more than there are cells
+    double cells_per_unit = 0;
+  };
+  static std::shared_ptr<const Table> make_table(int degree, std::vector<double> values);
+
   KnotVector(int degree, std::vector<double> values, Closure closure)
-      : degree_(degree), closure_(closure), values_(std::move(values)) {}
+      : degree_(degree), closure_(closure), table_(make_table(degree, std::move(values))) {}
 
   int degree_ = 0;
   Closure closure_ = Closure::kOpen;
-  std::vector<double> values_ = {0.0, 1.0};
+  std::shared_ptr<const Table> table_;
 };
 
 }  // namespace limn

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "modeler/bspline/seam.hpp"
+#include "modeler/bspline/refine.hpp"
 #include "modeler/fit/closing.hpp"
 #include "modeler/fit/corner_detection.hpp"
 #include "modeler/fit/cubic_basis.hpp"
@@ -440,7 +440,8 @@ template <int kDimension>
 class AscendingEvaluator {
  public:
   explicit AscendingEvaluator(const BsplineCurve<kDimension>& curve)
-      : knots_(curve.knots().values()), points_(curve.control_points()) {}
+      : knots_(curve.knots().values()),
+        points_(curve.control_points().begin(), curve.control_points().end()) {}
 
   Eigen::Matrix<double, kDimension, 1> operator()(double u) noexcept {
     while (span_ + 1 < points_.size() && u >= knots_[span_ + 1]) ++span_;
@@ -453,7 +454,7 @@ class AscendingEvaluator {
 
  private:
   const std::vector<double>& knots_;
-  const std::vector<Eigen::Matrix<double, kDimension, 1>>& points_;
+  std::vector<Eigen::Matrix<double, kDimension, 1>> points_;
   std::size_t span_ = 3;
 };
 

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "modeler/bspline/seam.hpp"
+#include "modeler/bspline/refine.hpp"
+#include "modeler/bspline/surface_evaluator.hpp"
 #include "modeler/bspline/tensor_spline.hpp"
 #include "tests/property/modeler/random_splines.hpp"
 #include "tests/support/for_all.hpp"
@@ -106,6 +107,46 @@ TEST(BsplineLaw, MixedDerivativesAgreeWithCentralDifferences) {
       const Eigen::Vector3d difference = (ahead[r] - behind[r]) / (2 * step);
       const double unit = std::pow(width[0], r) * width[1];
       EXPECT_LE((here[r + 2] - difference).norm() * unit, 1e-6 * kSize);
+    }
+  });
+}
+
+TEST(BsplineLaw, PreparedSurfacesAgreeWithTheRecursion) {
+  test::for_all(kCases, [](Rng& rng) {
+    const auto degree = [&] { return static_cast<int>(rng.integer(0, 11)); };  // 9 have tables
+    const auto surface = any_spline<2, 3>(
+        rng, {any_knots(rng, degree(), true), any_knots(rng, degree(), true)}, rng.chance(0.5));
+    const SurfaceEvaluator prepared(surface);
+    std::array<std::vector<double>, 2> at;
+    std::array<double, 2> span{};
+    for (int d = 0; d < 2; ++d) {
+      const KnotVector& knots = surface.knots(d);
+      at[d] = {knots.domain_begin(), knots.domain_end(), any_parameter(rng, knots),
+               knots.breakpoints()[knots.breakpoints().size() / 2]};
+      span[d] = 1e300;
+      for (std::size_t i = 1; i < knots.breakpoints().size(); ++i) {
+        span[d] = std::min(span[d], knots.breakpoints()[i] - knots.breakpoints()[i - 1]);
+      }
+    }
+    std::vector<SurfaceFrame> grid(16);
+    prepared.grid(at[0], at[1], grid);
+    for (std::size_t i = 0; i < 16; ++i) {
+      const double u = at[0][i % 4];
+      const double v = at[1][i / 4];
+      std::array<Eigen::Vector3d, 9> expected;
+      surface.derivatives({u, v}, {2, 2}, expected);
+      const SurfaceJet jet = prepared.jet(u, v);
+      // Powers of t lose up to 2^p of the digits; a derivative is as large as one over the span.
+      constexpr double kRounding = 1e-10 * kSize;
+      EXPECT_LE((jet.point - expected[0]).norm(), 1e-12 * kSize);
+      EXPECT_LE((jet.du - expected[1]).norm() * span[0], kRounding);
+      EXPECT_LE((jet.dv - expected[3]).norm() * span[1], kRounding);
+      EXPECT_LE((jet.duu - expected[2]).norm() * span[0] * span[0], kRounding);
+      EXPECT_LE((jet.duv - expected[4]).norm() * span[0] * span[1], kRounding);
+      EXPECT_LE((jet.dvv - expected[6]).norm() * span[1] * span[1], kRounding);
+      EXPECT_LE((grid[i].point - expected[0]).norm(), 1e-12 * kSize);
+      EXPECT_LE((grid[i].du - expected[1]).norm() * span[0], kRounding);
+      EXPECT_LE((grid[i].dv - expected[3]).norm() * span[1], kRounding);
     }
   });
 }

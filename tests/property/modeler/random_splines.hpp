@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "modeler/bspline/tensor_spline.hpp"
@@ -36,10 +37,25 @@ inline KnotVector any_knots(Rng& rng, int degree, bool breaks = false) {
   return *KnotVector::make(degree, values);
 }
 
-/// A spline on the knots with coordinates in [-100, 100].
+/// Makes values repeat as periodic directions of the knots must.
+template <class Value>
+void repeat_layers(std::span<const KnotVector> knots, std::vector<Value>& values) {
+  std::size_t stride = 1;
+  for (const KnotVector& k : knots) {
+    const auto count = static_cast<std::size_t>(k.basis_count());
+    const auto round = count - static_cast<std::size_t>(k.is_periodic() ? k.degree() : 0);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const std::size_t layer = i / stride % count;
+      if (layer >= round) values[i] = values[i - (layer - layer % round) * stride];
+    }
+    stride *= count;
+  }
+}
+
+/// A spline on the knots with coordinates in [-100, 100]; where rational, weights of 0.3 to 3.
 template <int kDirections, int kDimension>
 TensorSpline<kDirections, kDimension> any_spline(
-    Rng& rng, typename TensorSpline<kDirections, kDimension>::Knots knots) {
+    Rng& rng, typename TensorSpline<kDirections, kDimension>::Knots knots, bool rational = false) {
   using Spline = TensorSpline<kDirections, kDimension>;
   std::size_t size = 1;
   for (const KnotVector& k : knots) size *= static_cast<std::size_t>(k.basis_count());
@@ -47,17 +63,12 @@ TensorSpline<kDirections, kDimension> any_spline(
   for (auto& p : points) {
     for (int d = 0; d < kDimension; ++d) p[d] = rng.uniform(-100, 100);
   }
-  std::size_t stride = 1;
-  for (const KnotVector& k : knots) {
-    const auto count = static_cast<std::size_t>(k.basis_count());
-    const auto round = count - static_cast<std::size_t>(k.is_periodic() ? k.degree() : 0);
-    for (std::size_t i = 0; i < size; ++i) {
-      const std::size_t layer = i / stride % count;
-      if (layer >= round) points[i] = points[i - (layer - layer % round) * stride];
-    }
-    stride *= count;
-  }
-  return *Spline::make(std::move(knots), std::move(points));
+  repeat_layers(knots, points);
+  if (!rational) return *Spline::make(std::move(knots), points);
+  std::vector<double> weights(size);
+  for (double& w : weights) w = std::pow(10, rng.uniform(-0.5, 0.5));
+  repeat_layers(knots, weights);
+  return *Spline::make_rational(std::move(knots), points, weights);
 }
 
 /// Any curve of a degree up to `most_degree`.

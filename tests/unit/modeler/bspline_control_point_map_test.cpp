@@ -11,13 +11,12 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(ControlPointMap, AppliesAlongAStride) {
-  // Midpoints of neighbours, on two interleaved lines.
+TEST(ControlPointMap, MapsLayersOfDoubles) {
+  // Midpoints of neighbours, of two doubles each.
   const ControlPointMap midpoints(3, 2, {0, 1}, {0.5, 0.5, 0.5, 0.5});
   const std::vector<double> in = {0, 100, 2, 200, 6, 400};
   std::vector<double> out(4);
-  midpoints.apply(in.data(), out.data(), 2);
-  midpoints.apply(in.data() + 1, out.data() + 1, 2);
+  map_layers(midpoints, 2, in.data(), out.data());
   EXPECT_THAT(out, ElementsAre(1, 150, 4, 300));
 }
 
@@ -28,13 +27,13 @@ TEST(ControlPointMap, ComposesLikeApplyingInTurn) {
   std::vector<double> middle(3);
   std::vector<double> twice(2);
   std::vector<double> once(2);
-  inner.apply(in.data(), middle.data());
-  outer.apply(middle.data(), twice.data());
+  map_layers(inner, 1, in.data(), middle.data());
+  map_layers(outer, 1, middle.data(), twice.data());
   const ControlPointMap both = compose(outer, inner);
   EXPECT_EQ(both.rows(), 2);
   EXPECT_EQ(both.columns(), 4);
   EXPECT_EQ(both.width(), 3) << "the union of two neighbouring rows, no more";
-  both.apply(in.data(), once.data());
+  map_layers(both, 1, in.data(), once.data());
   EXPECT_EQ(once, twice);
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "modeler/bspline/seam.hpp"
+#include "modeler/bspline/refine.hpp"
 #include "modeler/bspline/tensor_spline.hpp"
 
 namespace limn {

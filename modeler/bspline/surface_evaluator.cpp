@@ -1,0 +1,313 @@
+#include "modeler/bspline/surface_evaluator.hpp"
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <vector>
+
+#include "input/base/expect.hpp"
+#include "modeler/bspline/lanes.hpp"
+
+namespace limn {
+namespace bspline_detail {
+namespace {
+
+constexpr int kMost = BasisTable::kMostDegree;
+constexpr int kMostPadded = (kMost + 4) / 4 * 4;
+
+/// The functions of one direction at a parameter: value[0][k], first and second derivatives.
+struct Functions {
+  alignas(32) double value[3][kMostPadded];
+  int first = 0;
+};
+
+/// Horner's scheme on kChunks times four functions: value, f' and f''/2 in t, then in u.
+template <int kOrder, int kChunks>
+LIMN_KERNEL void horner(const double* row, int degree, double t, double per_half,
+                        double (*out)[kMostPadded]) noexcept {
+  for (int chunk = 0; chunk < kChunks; ++chunk) {
+    const double* c = row + 4 * chunk;
+    Lanes value;
+    load(c, value);
+    Lanes first = {0, 0, 0, 0};
+    Lanes second = {0, 0, 0, 0};
+    for (int j = 0; j < degree; ++j) {
+      c += 4 * kChunks;
+      Lanes next;
+      load(c, next);
+      if constexpr (kOrder > 1) second = second * t + first;
+      if constexpr (kOrder > 0) first = first * t + value;
+      value = value * t + next;
+    }
+    std::memcpy(&out[0][4 * chunk], &value, sizeof value);
+    if constexpr (kOrder > 0) {
+      first *= per_half;
+      std::memcpy(&out[1][4 * chunk], &first, sizeof first);
+    }
+    if constexpr (kOrder > 1) {
+      second *= 2 * per_half * per_half;
+      std::memcpy(&out[2][4 * chunk], &second, sizeof second);
+    }
+  }
+}
+
+template <int kOrder>
+LIMN_KERNEL void evaluate_functions(const BasisTable& table, double u, Functions& out) noexcept {
+  const KnotVector& knots = table.knots();
+  const double x = knots.clamp(u);
+  const int i = knots.find_span(x) - knots.degree();
+  const BasisTable::Span& span = table.span(i);
+  const double t = (x - span.middle) * span.per_half;
+  out.first = span.first;
+  const double* row = table.coefficients(i);
+  switch (table.padded_count()) {
+    case 4:
+      return horner<kOrder, 1>(row, knots.degree(), t, span.per_half, out.value);
+    case 8:
+      return horner<kOrder, 2>(row, knots.degree(), t, span.per_half, out.value);
+    default:
+      return horner<kOrder, 3>(row, knots.degree(), t, span.per_half, out.value);
+  }
+}
+
+LIMN_KERNEL void store(const Lanes& from, Eigen::Vector3d& to) noexcept {
+  to[0] = from[0];
+  to[1] = from[1];
+  to[2] = from[2];
+}
+
+/// The derivatives of A / w from those of (A, w), lane 3 being w.
+LIMN_KERNEL void divide(Lanes& s, Lanes& u, Lanes& v, Lanes& uu, Lanes& uv, Lanes& vv) noexcept {
+  const double per_w = 1 / s[3];
+  const double wu = u[3];
+  const double wv = v[3];
+  s = s * per_w;
+  u = (u - wu * s) * per_w;
+  v = (v - wv * s) * per_w;
+  uu = (uu - 2 * wu * u - uu[3] * s) * per_w;
+  uv = (uv - wu * v - wv * u - uv[3] * s) * per_w;
+  vv = (vv - 2 * wv * v - vv[3] * s) * per_w;
+}
+
+/// The surface as the kernels see it.
+struct Prepared {
+  const SplineData* data;
+  const BasisTable* u;
+  const BasisTable* v;
+};
+
+/// Jets of a surface with kWidth coordinates a control point and degree kDegree in u.
+template <int kWidth, int kDegree>
+LIMN_KERNEL void evaluate_jets(const Prepared& surface, const Eigen::Vector2d* at,
+                               std::size_t count, SurfaceJet* out) noexcept {
+  const PagedArray& coordinates = surface.data->coordinates();
+  const auto row_length = static_cast<std::size_t>(surface.data->knots(0).basis_count());
+  const int degree_v = surface.data->knots(1).degree();
+  constexpr std::size_t kRun = (kDegree + 1) * kWidth;
+  double scratch[kRun + PagedArray::kPadding];
+  Functions fu;
+  Functions fv;
+  for (std::size_t i = 0; i < count; ++i) {
+    evaluate_functions<2>(*surface.u, at[i].x(), fu);
+    evaluate_functions<2>(*surface.v, at[i].y(), fv);
+    const Lanes zero = {0, 0, 0, 0};
+    Lanes s = zero, u = zero, v = zero, uu = zero, uv = zero, vv = zero;
+    std::size_t first =
+        static_cast<std::size_t>(fv.first) * row_length + static_cast<std::size_t>(fu.first);
+    for (int j = 0; j <= degree_v; ++j, first += row_length) {
+      const double* p = coordinates.run(first * kWidth, kRun, scratch);
+      Lanes line0 = zero, line1 = zero, line2 = zero;
+      for (int k = 0; k <= kDegree; ++k) {
+        Lanes x;
+        load(p + k * kWidth, x);
+        line0 += x * fu.value[0][k];
+        line1 += x * fu.value[1][k];
+        line2 += x * fu.value[2][k];
+      }
+      const double b0 = fv.value[0][j];
+      const double b1 = fv.value[1][j];
+      s += line0 * b0;
+      u += line1 * b0;
+      uu += line2 * b0;
+      v += line0 * b1;
+      uv += line1 * b1;
+      vv += line0 * fv.value[2][j];
+    }
+    if constexpr (kWidth == 4) divide(s, u, v, uu, uv, vv);
+    store(s, out[i].point);
+    store(u, out[i].du);
+    store(v, out[i].dv);
+    store(uu, out[i].duu);
+    store(uv, out[i].duv);
+    store(vv, out[i].dvv);
+  }
+}
+
+template <int kWidth>
+LIMN_KERNEL void evaluate_jets_of(const Prepared& surface, const Eigen::Vector2d* at,
+                                  std::size_t count, SurfaceJet* out) noexcept {
+  switch (surface.data->knots(0).degree()) {
+    case 0:
+      return evaluate_jets<kWidth, 0>(surface, at, count, out);
+    case 1:
+      return evaluate_jets<kWidth, 1>(surface, at, count, out);
+    case 2:
+      return evaluate_jets<kWidth, 2>(surface, at, count, out);
+    case 3:
+      return evaluate_jets<kWidth, 3>(surface, at, count, out);
+    case 4:
+      return evaluate_jets<kWidth, 4>(surface, at, count, out);
+    case 5:
+      return evaluate_jets<kWidth, 5>(surface, at, count, out);
+    case 6:
+      return evaluate_jets<kWidth, 6>(surface, at, count, out);
+    case 7:
+      return evaluate_jets<kWidth, 7>(surface, at, count, out);
+    case 8:
+      return evaluate_jets<kWidth, 8>(surface, at, count, out);
+    default:
+      return evaluate_jets<kWidth, 9>(surface, at, count, out);
+  }
+}
+
+LIMN_ON_EACH_PROCESSOR(jets_of,
+                       (const Prepared& surface, const Eigen::Vector2d* at, std::size_t count,
+                        SurfaceJet* out),
+                       (surface, at, count, out),
+                       surface.data->is_rational() ? evaluate_jets_of<4>(surface, at, count, out)
+                                                   : evaluate_jets_of<3>(surface, at, count, out))
+
+/// Where a grid's parameters meet one direction.
+using FunctionList = std::vector<Functions>;
+
+LIMN_KERNEL void list_functions(const BasisTable& table, std::span<const double> at,
+                                FunctionList& out) noexcept {
+  for (std::size_t i = 0; i < at.size(); ++i) evaluate_functions<1>(table, at[i], out[i]);
+}
+
+/// One line of a grid: control points of the curve at v and of its derivative along v, then the
+/// points on it.
+template <int kWidth>
+LIMN_KERNEL void evaluate_line(const Prepared& surface, const FunctionList& us, const Functions& fv,
+                               double* curve, SurfaceFrame* out) noexcept {
+  const PagedArray& coordinates = surface.data->coordinates();
+  const int degree_u = surface.data->knots(0).degree();
+  const int degree_v = surface.data->knots(1).degree();
+  const auto row = static_cast<std::size_t>(surface.data->knots(0).basis_count());
+  double scratch[4 + PagedArray::kPadding];
+  for (std::size_t k = 0; k < row; ++k) {
+    Lanes sum = {0, 0, 0, 0};
+    Lanes sum_v = sum;
+    for (int j = 0; j <= degree_v; ++j) {
+      Lanes x;
+      load(coordinates.run((static_cast<std::size_t>(fv.first + j) * row + k) * kWidth, kWidth,
+                           scratch),
+           x);
+      sum += x * fv.value[0][j];
+      sum_v += x * fv.value[1][j];
+    }
+    std::memcpy(curve + 8 * k, &sum, sizeof sum);
+    std::memcpy(curve + 8 * k + 4, &sum_v, sizeof sum_v);
+  }
+  for (std::size_t i = 0; i < us.size(); ++i) {
+    const double* p = curve + 8 * us[i].first;
+    Lanes s = {0, 0, 0, 0};
+    Lanes u = s;
+    Lanes v = s;
+    for (int k = 0; k <= degree_u; ++k, p += 8) {
+      Lanes x;
+      Lanes x_v;
+      load(p, x);
+      load(p + 4, x_v);
+      s += x * us[i].value[0][k];
+      u += x * us[i].value[1][k];
+      v += x_v * us[i].value[0][k];
+    }
+    if constexpr (kWidth == 4) {
+      const double per_w = 1 / s[3];
+      s = s * per_w;
+      u = (u - u[3] * s) * per_w;
+      v = (v - v[3] * s) * per_w;
+    }
+    store(s, out[i].point);
+    store(u, out[i].du);
+    store(v, out[i].dv);
+    const Eigen::Vector3d cross = out[i].du.cross(out[i].dv);
+    const double length = cross.norm();
+    out[i].normal = length > 0 ? Eigen::Vector3d(cross / length) : Eigen::Vector3d(0, 0, 0);
+  }
+}
+
+LIMN_KERNEL void evaluate_grid(const Prepared& surface, std::span<const double> us,
+                               std::span<const double> vs, FunctionList& lists_u,
+                               FunctionList& lists_v, double* curve, SurfaceFrame* out) noexcept {
+  list_functions(*surface.u, us, lists_u);
+  list_functions(*surface.v, vs, lists_v);
+  const bool rational = surface.data->is_rational();
+  for (const Functions& fv : lists_v) {
+    rational ? evaluate_line<4>(surface, lists_u, fv, curve, out)
+             : evaluate_line<3>(surface, lists_u, fv, curve, out);
+    out += us.size();
+  }
+}
+
+LIMN_ON_EACH_PROCESSOR(grid_of,
+                       (const Prepared& surface, std::span<const double> us,
+                        std::span<const double> vs, FunctionList& lists_u, FunctionList& lists_v,
+                        double* curve, SurfaceFrame* out),
+                       (surface, us, vs, lists_u, lists_v, curve, out),
+                       evaluate_grid(surface, us, vs, lists_u, lists_v, curve, out))
+
+SurfaceJet jet_of_any_degree(const BsplineSurface& surface, double u, double v) noexcept {
+  std::array<Eigen::Vector3d, 9> d;
+  surface.derivatives({u, v}, {2, 2}, d);
+  return {d[0], d[1], d[3], d[2], d[4], d[6]};
+}
+
+}  // namespace
+}  // namespace bspline_detail
+
+SurfaceEvaluator::SurfaceEvaluator(BsplineSurface surface)
+    : surface_(std::move(surface)),
+      tables_{BasisTable(surface_.knots(0)), BasisTable(surface_.knots(1))} {}
+
+SurfaceJet SurfaceEvaluator::jet(double u, double v) const noexcept {
+  const Eigen::Vector2d at(u, v);
+  SurfaceJet out;
+  jets({&at, 1}, {&out, 1});
+  return out;
+}
+
+void SurfaceEvaluator::jets(std::span<const Eigen::Vector2d> at,
+                            std::span<SurfaceJet> out) const noexcept {
+  LIMN_EXPECT(at.size() == out.size());
+  if (tables_[0].usable() && tables_[1].usable()) {
+    bspline_detail::jets_of({&surface_.data(), &tables_[0], &tables_[1]}, at.data(), at.size(),
+                            out.data());
+    return;
+  }
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    out[i] = bspline_detail::jet_of_any_degree(surface_, at[i].x(), at[i].y());
+  }
+}
+
+void SurfaceEvaluator::grid(std::span<const double> us, std::span<const double> vs,
+                            std::span<SurfaceFrame> out) const {
+  LIMN_EXPECT(out.size() == us.size() * vs.size());
+  if (tables_[0].usable() && tables_[1].usable()) {
+    bspline_detail::FunctionList lists_u(us.size());
+    bspline_detail::FunctionList lists_v(vs.size());
+    std::vector<double> curve(8 * static_cast<std::size_t>(surface_.knots(0).basis_count()));
+    bspline_detail::grid_of({&surface_.data(), &tables_[0], &tables_[1]}, us, vs, lists_u, lists_v,
+                            curve.data(), out.data());
+    return;
+  }
+  for (std::size_t j = 0; j < vs.size(); ++j) {
+    for (std::size_t i = 0; i < us.size(); ++i) {
+      const SurfaceJet jet = bspline_detail::jet_of_any_degree(surface_, us[i], vs[j]);
+      out[i + us.size() * j] = {jet.point, jet.du, jet.dv,
+                                normal(jet).value_or(Eigen::Vector3d::Zero())};
+    }
+  }
+}
+
+}  // namespace limn
