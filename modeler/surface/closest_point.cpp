@@ -1,0 +1,328 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "modeler/base/tolerance.hpp"
+#include "modeler/surface/surface_index.hpp"
+
+namespace limn {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kMostSteps = 40;      ///< of one Newton iteration
+constexpr int kMostHalvings = 100;  ///< of a leaf
+constexpr int kMostCells = 4096;    ///< halves looked at in one query
+
+double square(double x) { return x * x; }
+
+/// Square of the distance from p to a box, 0 within.
+double square_distance(const Vector3d& p, const Vector3d& low, const Vector3d& high) noexcept {
+  return (low - p).cwiseMax(p - high).cwiseMax(0.0).squaredNorm();
+}
+
+/// f = |S - p|^2 / 2 at a jet: gradient and Hessian.
+///
+///     f_u = r . S_u,   f_uu = S_u . S_u + r . S_uu,   f_uv = S_u . S_v + r . S_uv,   r = S - p.
+struct Objective {
+  Vector2d gradient;
+  double uu, uv, vv;
+};
+
+Objective objective(const SurfaceJet& jet, const Vector3d& r) noexcept {
+  return {{r.dot(jet.du), r.dot(jet.dv)},
+          jet.du.dot(jet.du) + r.dot(jet.duu),
+          jet.du.dot(jet.dv) + r.dot(jet.duv),
+          jet.dv.dot(jet.dv) + r.dot(jet.dvv)};
+}
+
+/// Whether f is strictly convex on all of the patch. In the coordinates that flatten the patch
+/// (PatchBound::flatten) the Hessian is J^T J + Q, Q_ab = r . S_ab. The first part is at least
+/// (1 - t)^2, where the tangents change by t along the tangent plane (off it, they only add); Q is
+/// that of the middle but for what the reaches allow.
+bool is_convex(const PatchBound& b, const Vector3d& r) noexcept {
+  if (!(b.turn_along < b.least_stretch)) return false;
+  const Vector2d half = b.box.half();
+  Eigen::Matrix2d q;
+  q(0, 0) = r.dot(b.jet.duu) * half.x() * half.x();
+  q(0, 1) = q(1, 0) = r.dot(b.jet.duv) * half.x() * half.y();
+  q(1, 1) = r.dot(b.jet.dvv) * half.y() * half.y();
+  q = b.flatten.transpose() * q * b.flatten;
+  const double least_q =
+      0.5 * (q(0, 0) + q(1, 1)) - std::sqrt(square(0.5 * (q(0, 0) - q(1, 1))) + square(q(0, 1)));
+  const double off = std::abs(r.dot(b.frame.col(2)));
+  const double along = std::sqrt(std::max(0.0, r.squaredNorm() - off * off));
+  const double change = off * b.second_reach_off + along * b.second_reach_along +
+                        b.along.point * (b.second_along + b.second_reach_along) +
+                        b.off.point * (b.second_off + b.second_reach_off);
+  return square(1 - b.turn_along / b.least_stretch) + least_q - change / square(b.least_stretch) >
+         0;
+}
+
+class ClosestSearch {
+ public:
+  ClosestSearch(const SurfaceIndex& index, const Vector3d& p) : index_(index), p_(p) {}
+
+  ClosestPoint run() {
+    if (index_.nodes().empty()) {
+      for (const auto& leaf : index_.leaves()) visit_leaf(leaf);
+    } else {
+      visit_nodes();
+    }
+    settle_later();
+    const double distance = std::sqrt(best_);
+    return {parameter_, point_, distance, std::max(0.0, distance - abandoned_)};
+  }
+
+ private:
+  struct Waiting {
+    double square;
+    std::int32_t node;
+  };
+  struct Later {
+    double square;
+    const SurfaceIndex::Leaf* leaf;
+  };
+
+  void visit_nodes() {
+    std::array<Waiting, 64> stack;  // deeper than any tree of int32 leaves that halves at each node
+    std::size_t size = 0;
+    stack[size++] = {0, 0};
+    while (size > 0) {
+      const Waiting next = stack[--size];
+      if (next.square >= best_) continue;
+      if (next.node < 0) {
+        visit_leaf(index_.leaves()[static_cast<std::size_t>(~next.node)]);
+        continue;
+      }
+      const auto& node = index_.nodes()[static_cast<std::size_t>(next.node)];
+      const std::array<double, 2> d = {square_distance(p_, node.low[0], node.high[0]),
+                                       square_distance(p_, node.low[1], node.high[1])};
+      const std::size_t near = d[1] < d[0] ? 1 : 0;
+      stack[size++] = {d[1 - near], node.child[1 - near]};
+      stack[size++] = {d[near], node.child[near]};
+    }
+  }
+
+  /// No point of the patch is nearer; squared.
+  double least_square(const PatchBound& bound, const Vector3d& r) const noexcept {
+    const Vector3d local = bound.frame.transpose() * -r;
+    return square_distance(local, bound.frame_low, bound.frame_high);
+  }
+
+  void visit_leaf(const SurfaceIndex::Leaf& leaf) {
+    const Vector3d r = leaf.bound.jet.point - p_;
+    const double least = least_square(leaf.bound, r);
+    if (least >= best_ || settle(leaf.bound, r)) return;
+    // Halving is dear, and what other leaves hold may spare it.
+    keep_if_better(leaf.bound);
+    later_.push_back({least, &leaf});
+  }
+
+  void settle_later() {
+    std::sort(later_.begin(), later_.end(), [](const Later& a, const Later& b) {
+      return a.square != b.square ? a.square < b.square : a.leaf < b.leaf;
+    });
+    for (const Later& next : later_) {
+      if (next.square >= best_) return;
+      Patch patch = index_.patch(*next.leaf);
+      if (!cannot_be_nearer(patch)) halve(std::move(patch), next.leaf->bound, 0);
+    }
+  }
+
+  /// Finds the least distance of a patch where f is known to be convex; false where it is not.
+  bool settle(const PatchBound& bound, const Vector3d& r) {
+    if (!is_convex(bound, r)) return false;
+    // From the best place if it is near: on the edge towards it, where the least is likely.
+    const ParameterBox& box = bound.box;
+    const Vector2d edge = parameter_.cwiseMax(box.low).cwiseMin(box.high);
+    if ((edge - parameter_).cwiseAbs().cwiseQuotient(box.half()).maxCoeff() < 4) {
+      return descend(box, edge, index_.evaluator().jet(edge.x(), edge.y()));
+    }
+    return descend(box, box.center(), bound.jet);
+  }
+
+  /// Newton's iteration on f within a box, in which f is convex; keeps what is better than the
+  /// best. Whether it converged.
+  bool descend(const ParameterBox& box, Vector2d at, SurfaceJet jet) {
+    double before = std::numeric_limits<double>::infinity();
+    Vector2d last = at;
+    for (int step = 0; step < kMostSteps; ++step) {
+      const Vector3d r = jet.point - p_;
+      const double f = r.squaredNorm();
+      if (f < best_) {
+        best_ = f;
+        parameter_ = at;
+        point_ = jet.point;
+      }
+      if (f > before) {                         // too far: half way back
+        constexpr double kRoundingStep = 1e-7;  // a step that only rounding can make worse
+        if ((at - last).cwiseAbs().cwiseQuotient(box.half()).maxCoeff() < kRoundingStep)
+          return true;
+        at = 0.5 * (at + last);
+        jet = index_.evaluator().jet(at.x(), at.y());
+        continue;
+      }
+      before = f;
+      last = at;
+      const Objective here = objective(jet, r);
+      // A convex f lies above its tangent plane: nothing in the box may be nearer.
+      double least = f;
+      for (Eigen::Index d = 0; d < 2; ++d) {
+        least += 2 * std::min(here.gradient[d] * (box.low[d] - at[d]),
+                              here.gradient[d] * (box.high[d] - at[d]));
+      }
+      if (least >= best_) return true;
+      // Coordinates at an edge that the gradient pushes against stay there.
+      const auto held = [&](Eigen::Index d) {
+        return (at[d] <= box.low[d] && here.gradient[d] > 0) ||
+               (at[d] >= box.high[d] && here.gradient[d] < 0);
+      };
+      const bool hold_u = held(0);
+      const bool hold_v = held(1);
+      if (hold_u && hold_v) return true;
+      Vector2d move(0, 0);
+      const double det = here.uu * here.vv - here.uv * here.uv;
+      if (!hold_u && !hold_v) {
+        if (!(here.uu > 0 && det > 0)) return false;
+        move = Vector2d(here.uv * here.gradient.y() - here.vv * here.gradient.x(),
+                        here.uv * here.gradient.x() - here.uu * here.gradient.y()) /
+               det;
+      } else if (hold_v) {
+        if (!(here.uu > 0)) return false;
+        move.x() = -here.gradient.x() / here.uu;
+      } else {
+        if (!(here.vv > 0)) return false;
+        move.y() = -here.gradient.y() / here.vv;
+      }
+      const Vector2d next = (at + move).cwiseMax(box.low).cwiseMin(box.high);
+      const Vector2d moved = next - at;
+      at = next;
+      // Quadratic convergence: what a step of this size leaves is below rounding.
+      constexpr double kLastStep = 1e-6;
+      const bool last_one = moved.cwiseAbs().cwiseQuotient(box.half()).maxCoeff() < kLastStep;
+      jet = index_.evaluator().jet(at.x(), at.y());
+      if (last_one) {
+        const double end = (jet.point - p_).squaredNorm();
+        if (end < best_) {
+          best_ = end;
+          parameter_ = at;
+          point_ = jet.point;
+        }
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void halve(Patch patch, const PatchBound& bound, int halvings) {
+    if (halvings == kMostHalvings || cells_ >= kMostCells) {
+      give_up(bound);
+      return;
+    }
+    Patch after = patch.halve(direction_to_halve(bound));
+    // The nearer half first: what it finds may spare the other.
+    PatchBound bounds[2];
+    double least[2];
+    Patch* patches[2] = {&patch, &after};
+    for (int i = 0; i < 2; ++i) {
+      const Vector2d center = patches[i]->box.center();
+      bounds[i] = bound_of(*patches[i], index_.evaluator().jet(center.x(), center.y()));
+      least[i] = least_square(bounds[i], bounds[i].jet.point - p_);
+    }
+    const int near = least[1] < least[0] ? 1 : 0;
+    for (const int i : {near, 1 - near}) {
+      if (least[i] >= best_) continue;
+      ++cells_;
+      const Vector3d r = bounds[i].jet.point - p_;
+      if (settle(bounds[i], r)) continue;
+      keep_if_better(bounds[i]);
+      if (cannot_be_nearer(*patches[i])) continue;
+      halve(std::move(*patches[i]), bounds[i], halvings + 1);
+    }
+  }
+
+  void keep_if_better(const PatchBound& bound) {
+    const double f = (bound.jet.point - p_).squaredNorm();
+    if (f >= best_) return;
+    best_ = f;
+    parameter_ = bound.box.center();
+    point_ = bound.jet.point;
+  }
+
+  void give_up(const PatchBound& bound) {
+    abandoned_ = std::min(abandoned_, std::sqrt(least_square(bound, bound.jet.point - p_)));
+  }
+
+  /// Across the direction in which the distance changes more, where ties run along the other.
+  int direction_to_halve(const PatchBound& bound) const {
+    const Vector3d r = bound.jet.point - p_;
+    const Objective middle = objective(bound.jet, r);
+    const Vector2d half = bound.box.half();
+    const double u =
+        std::abs(middle.gradient.x()) * half.x() + std::abs(middle.uu) * square(half.x());
+    const double v =
+        std::abs(middle.gradient.y()) * half.y() + std::abs(middle.vv) * square(half.y());
+    if (u > 2 * v) return 0;
+    if (v > 2 * u) return 1;
+    return wider_direction(bound);
+  }
+
+  /// Whether |A - w p|^2 >= (best - kGeometric)^2 w^2 on the patch: all Bernstein coefficients of
+  /// the difference are 0 or more. This is sharp where the distance is the same all over, as from a
+  /// sphere's centre.
+  bool cannot_be_nearer(const Patch& patch) {
+    const double within = std::max(0.0, std::sqrt(best_) - kGeometric);
+    const int nu = patch.shape.count[0];
+    const int nv = patch.shape.count[1];
+    // In the scaled Bernstein basis, binom(p, i) times a coefficient, products are convolutions.
+    scaled_.clear();
+    double in_v = 1;
+    for (int j = 0; j < nv; ++j) {
+      double in_u = in_v;
+      for (int i = 0; i < nu; ++i) {
+        const double* x = patch.net.data() + 4 * (i + nu * j);
+        scaled_.emplace_back(x[0] - x[3] * p_.x(), x[1] - x[3] * p_.y(), x[2] - x[3] * p_.z(),
+                             x[3] * within);
+        scaled_.back() *= in_u;
+        in_u = in_u * (nu - 1 - i) / (i + 1);
+      }
+      in_v = in_v * (nv - 1 - j) / (j + 1);
+    }
+    for (int k = 0; k <= 2 * (nu - 1); ++k) {
+      for (int l = 0; l <= 2 * (nv - 1); ++l) {
+        double sum = 0;
+        for (int j = std::max(0, l - nv + 1); j <= std::min(l, nv - 1); ++j) {
+          for (int i = std::max(0, k - nu + 1); i <= std::min(k, nu - 1); ++i) {
+            const Eigen::Vector4d& a = scaled_[static_cast<std::size_t>(i + nu * j)];
+            const Eigen::Vector4d& b = scaled_[static_cast<std::size_t>(k - i + nu * (l - j))];
+            sum += a.x() * b.x() + a.y() * b.y() + a.z() * b.z() - a.w() * b.w();
+          }
+        }
+        if (sum < 0) return false;
+      }
+    }
+    abandoned_ = std::min(abandoned_, within);
+    return true;
+  }
+
+  const SurfaceIndex& index_;
+  Vector3d p_;
+  double best_ = std::numeric_limits<double>::infinity();
+  Vector2d parameter_ = Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Vector3d point_ = Vector3d::Zero();
+  double abandoned_ = std::numeric_limits<double>::infinity();  ///< least distance not searched
+  std::vector<Later> later_;
+  std::vector<Eigen::Vector4d> scaled_;
+  int cells_ = 0;
+};
+
+}  // namespace
+
+ClosestPoint SurfaceIndex::closest_point(const Vector3d& p) const {
+  return ClosestSearch(*this, p).run();
+}
+
+}  // namespace limn

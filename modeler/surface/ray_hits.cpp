@@ -1,0 +1,281 @@
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "modeler/base/tolerance.hpp"
+#include "modeler/surface/surface_index.hpp"
+
+namespace limn {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kMostSteps = 30;      ///< of one Newton iteration
+constexpr int kMostHalvings = 100;  ///< of a leaf
+constexpr int kMostCells = 4096;    ///< halves looked at in one query
+/// Neighbours share their edges: a root this far outside a patch, in its half sides, counts.
+constexpr double kEdge = 1e-9;
+
+/// The part of the ray inside a box, first > last where there is none. The box is widened by
+/// rounding, so that what touches it is inside.
+struct Interval {
+  double first;
+  double last;
+};
+
+class RaySearch {
+ public:
+  RaySearch(const SurfaceIndex& index, const Ray& ray, bool first_only)
+      : index_(index), ray_(ray), first_only_(first_only), most_(ray.most) {
+    const double length = ray.direction.norm();
+    const Vector3d along = ray.direction / length;
+    across_[0] = along.unitOrthogonal();
+    across_[1] = along.cross(across_[0]);
+    per_length_ = 1 / length;
+    along_ = along;
+    for (Eigen::Index d = 0; d < 3; ++d) inverse_[d] = 1 / ray.direction[d];
+  }
+
+  RayHits run() {
+    if (index_.nodes().empty()) {
+      for (const auto& leaf : index_.leaves()) visit_leaf(leaf);
+    } else {
+      visit_nodes();
+    }
+    finish();
+    return std::move(found_);
+  }
+
+ private:
+  struct Waiting {
+    double first;
+    std::int32_t node;
+  };
+
+  Interval meet(const Vector3d& low, const Vector3d& high) const noexcept {
+    Interval out{0, most_};
+    for (Eigen::Index d = 0; d < 3; ++d) {
+      // 0 times infinity is not a number, which min and max below leave out.
+      const double a = (low[d] - ray_.origin[d]) * inverse_[d];
+      const double b = (high[d] - ray_.origin[d]) * inverse_[d];
+      const double near = a < b ? a : b;
+      const double far = a < b ? b : a;
+      if (ray_.direction[d] == 0) {
+        if (ray_.origin[d] < low[d] || ray_.origin[d] > high[d]) return {1, 0};
+        continue;
+      }
+      out.first = near > out.first ? near : out.first;
+      out.last = far < out.last ? far : out.last;
+    }
+    const double rounding = 1e-14 * std::abs(out.last);
+    out.first -= rounding;
+    out.last += rounding;
+    return out;
+  }
+
+  void visit_nodes() {
+    std::array<Waiting, 64> stack;
+    std::size_t size = 0;
+    stack[size++] = {0, 0};
+    while (size > 0) {
+      const Waiting next = stack[--size];
+      if (next.first > most_) continue;
+      if (next.node < 0) {
+        visit_leaf(index_.leaves()[static_cast<std::size_t>(~next.node)]);
+        continue;
+      }
+      const auto& node = index_.nodes()[static_cast<std::size_t>(next.node)];
+      const std::array<Interval, 2> in = {meet(node.low[0], node.high[0]),
+                                          meet(node.low[1], node.high[1])};
+      const std::size_t near = in[1].first < in[0].first ? 1 : 0;
+      for (const std::size_t side : {1 - near, near}) {
+        if (in[side].first <= in[side].last) stack[size++] = {in[side].first, node.child[side]};
+      }
+    }
+  }
+
+  /// The ray in the patch's own frame, against its box there.
+  bool misses(const PatchBound& b) const noexcept {
+    const Vector3d origin = b.frame.transpose() * (ray_.origin - b.jet.point);
+    const Vector3d direction = b.frame.transpose() * ray_.direction;
+    double first = 0;
+    double last = most_;
+    for (Eigen::Index d = 0; d < 3; ++d) {
+      const double rounding = 1e-14 * (std::abs(origin[d]) + b.reach);
+      const double low = b.frame_low[d] - rounding;
+      const double high = b.frame_high[d] + rounding;
+      if (std::abs(direction[d]) < 1e-300) {
+        if (origin[d] < low || origin[d] > high) return true;
+        continue;
+      }
+      const double a = (low - origin[d]) / direction[d];
+      const double c = (high - origin[d]) / direction[d];
+      first = std::max(first, std::min(a, c));
+      last = std::min(last, std::max(a, c));
+    }
+    return first > last + 1e-14 * std::abs(last);
+  }
+
+  void visit_leaf(const SurfaceIndex::Leaf& leaf) {
+    if (misses(leaf.bound)) return;
+    if (settle(leaf.bound)) return;
+    halve(index_.patch(leaf), leaf.bound, 0);
+  }
+
+  /// S seen along the ray, F(u, v) = (across_0, across_1) . (S - origin), which is 0 at hits.
+  Vector2d seen(const Vector3d& x) const noexcept {
+    const Vector3d r = x - ray_.origin;
+    return {r.dot(across_[0]), r.dot(across_[1])};
+  }
+  Matrix2d jacobian(const SurfaceJet& jet) const noexcept {
+    Matrix2d out;
+    out << jet.du.dot(across_[0]), jet.dv.dot(across_[0]), jet.du.dot(across_[1]),
+        jet.dv.dot(across_[1]);
+    return out;
+  }
+
+  /// Finds the only hit that a patch can have, or that it has none; false where several are
+  /// possible.
+  ///
+  /// In coordinates x of the box, from -1 to 1, let J be the Jacobian of F in the middle. If the
+  /// tangents turn so little that |J^-1 J(x) - 1| <= k < 1 on the box, x -> J^-1 F(x) is one to one
+  /// there, and a root x* lies near the middle's Newton step x_0: |x_0 - x*| <= k |x*|.
+  bool settle(const PatchBound& b) {
+    const Vector2d half = b.box.half();
+    const Matrix2d j = jacobian(b.jet) * half.asDiagonal();
+    const double det = j.determinant();
+    const double mean = 0.5 * j.squaredNorm();
+    const double largest = std::sqrt(mean + std::sqrt(std::max(0.0, mean * mean - det * det)));
+    const double smallest = largest > 0 ? std::abs(det) / largest : 0.0;
+    constexpr double kMostTurn = 0.9;
+    if (!(b.turn < kMostTurn * smallest)) return false;
+    const double k = b.turn / smallest;
+    const Vector2d f = seen(b.jet.point);
+    const Vector2d step =
+        Vector2d(j(0, 1) * f.y() - j(1, 1) * f.x(), j(1, 0) * f.x() - j(0, 0) * f.y()) / det;
+    constexpr double kDiagonal = 1.4142135623730951;
+    if (step.cwiseAbs().maxCoeff() > 1 + k * kDiagonal + kEdge) return true;
+    return pursue(b, step);
+  }
+
+  /// Newton from the middle's step; the chord with the middle's Jacobian, which contracts, where
+  /// Newton leaves.
+  bool pursue(const PatchBound& b, Vector2d x) {
+    const Vector2d center = b.box.center();
+    const Vector2d half = b.box.half();
+    const Matrix2d chord = (jacobian(b.jet) * half.asDiagonal()).inverse();
+    double before = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kMostSteps; ++step) {
+      // Roots outside do not count: stay near.
+      x = x.cwiseMax(-1.5).cwiseMin(1.5);
+      const Vector2d at = center + x.cwiseProduct(half);
+      const SurfaceJet jet = index_.evaluator().jet(at.x(), at.y());
+      const Vector2d f = seen(jet.point);
+      const Matrix2d j = jacobian(jet) * half.asDiagonal();
+      const double det = j.determinant();
+      Vector2d move(j(0, 1) * f.y() - j(1, 1) * f.x(), j(1, 0) * f.x() - j(0, 0) * f.y());
+      move /= det;
+      const double size = move.cwiseAbs().maxCoeff();
+      if (!(size < 2 * before)) {
+        move = -chord * f;
+        if (!(move.cwiseAbs().maxCoeff() < 4)) return false;
+      }
+      before = size;
+      x += move;
+      constexpr double kLastStep = 1e-8;  // squared it is below rounding
+      if (move.cwiseAbs().maxCoeff() < kLastStep) {
+        if (x.cwiseAbs().maxCoeff() > 1 + kEdge) return true;  // the root is a neighbour's
+        x = x.cwiseMax(-1.0).cwiseMin(1.0);
+        const Vector2d end = center + x.cwiseProduct(half);
+        add(end, index_.evaluator().jet(end.x(), end.y()).point, false);
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void add(const Vector2d& parameter, const Vector3d& point, bool tangent) {
+    const double t = (point - ray_.origin).dot(along_) * per_length_;
+    if (t < -kGeometric * per_length_ || t > most_ + kGeometric * per_length_) return;
+    found_.hits.push_back({std::max(t, 0.0), parameter, point, tangent});
+    if (first_only_) most_ = std::min(most_, std::max(t, 0.0));
+  }
+
+  void halve(Patch patch, const PatchBound& bound, int halvings) {
+    const double across = seen(bound.jet.point).norm();
+    if (bound.reach < 0.5 * kGeometric || halvings == kMostHalvings) {
+      if (across <= bound.reach + kGeometric) add(bound.box.center(), bound.jet.point, true);
+      return;
+    }
+    if (cells_ >= kMostCells) {
+      found_.complete = false;
+      if (across <= bound.reach) add(bound.box.center(), bound.jet.point, true);
+      return;
+    }
+    Patch after = patch.halve(wider_direction(bound));
+    std::array<PatchBound, 2> bounds;
+    std::array<Patch*, 2> patches = {&patch, &after};
+    std::array<double, 2> distance{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Vector2d center = patches[i]->box.center();
+      bounds[i] = bound_of(*patches[i], index_.evaluator().jet(center.x(), center.y()));
+      distance[i] = (bounds[i].jet.point - ray_.origin).dot(along_);
+    }
+    const std::size_t near = distance[1] < distance[0] ? 1 : 0;
+    for (const std::size_t i : {near, 1 - near}) {
+      ++cells_;
+      if (misses(bounds[i]) || settle(bounds[i])) continue;
+      halve(std::move(*patches[i]), bounds[i], halvings + 1);
+    }
+  }
+
+  /// Ascending, one for each place: patches that share an edge both find what lies on it.
+  void finish() {
+    auto& hits = found_.hits;
+    std::sort(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
+      if (a.t != b.t) return a.t < b.t;
+      if (a.tangent != b.tangent) return b.tangent;
+      return std::pair(a.parameter.x(), a.parameter.y()) <
+             std::pair(b.parameter.x(), b.parameter.y());
+    });
+    std::vector<RayHit> kept;
+    for (const RayHit& hit : hits) {
+      const bool known = std::any_of(kept.begin(), kept.end(), [&hit](const RayHit& k) {
+        // Tangent places are found in cells about as large as kGeometric, some beside each other.
+        const double near = hit.tangent || k.tangent ? 1e3 * kGeometric : 10 * kGeometric;
+        return (k.point - hit.point).norm() < near;
+      });
+      if (!known) kept.push_back(hit);
+    }
+    hits = std::move(kept);
+  }
+
+  const SurfaceIndex& index_;
+  Ray ray_;
+  bool first_only_;
+  double most_;
+  Vector3d along_;
+  std::array<Vector3d, 2> across_;
+  Vector3d inverse_;
+  double per_length_ = 1;
+  RayHits found_;
+  int cells_ = 0;
+};
+
+}  // namespace
+
+std::optional<RayHit> SurfaceIndex::first_hit(const Ray& ray) const {
+  const RayHits found = RaySearch(*this, ray, true).run();
+  if (found.hits.empty()) return std::nullopt;
+  return found.hits.front();
+}
+
+RayHits SurfaceIndex::all_hits(const Ray& ray) const { return RaySearch(*this, ray, false).run(); }
+
+}  // namespace limn

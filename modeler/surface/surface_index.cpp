@@ -1,0 +1,118 @@
+#include "modeler/surface/surface_index.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+namespace limn {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Leaves bend less, unless they were halved as often as is worth it: near a pole nothing helps.
+constexpr double kMostBending = 0.35;
+constexpr int kMostHalvings = 8;
+/// Positive Bernstein weights come with halving because the denominator is positive.
+constexpr int kMostHalvingsForWeights = 80;
+
+}  // namespace
+
+int wider_direction(const PatchBound& bound) noexcept {
+  const Eigen::Vector2d half = bound.box.half();
+  return (bound.along.du + bound.off.du) * half.x() >= (bound.along.dv + bound.off.dv) * half.y()
+             ? 0
+             : 1;
+}
+
+SurfaceIndex::SurfaceIndex(BsplineSurface surface)
+    : evaluator_(std::move(surface)), grid_(evaluator_.surface()) {
+  for (int v = 0; v < grid_.spans(1); ++v) {
+    for (int u = 0; u < grid_.spans(0); ++u) add_leaves(grid_.patch(u, v), {u, v}, 0);
+  }
+  if (leaves_.size() < 2) return;
+  std::vector<std::int32_t> order(leaves_.size());
+  std::iota(order.begin(), order.end(), 0);
+  nodes_.reserve(leaves_.size());
+  add_nodes(order, 0, order.size());
+}
+
+void SurfaceIndex::add_leaves(Patch patch, std::array<std::int32_t, 2> span, int halvings) {
+  if (!patch.has_positive_weights() && halvings < kMostHalvingsForWeights) {
+    Patch after = patch.halve(halvings % 2);
+    add_leaves(std::move(patch), span, halvings + 1);
+    add_leaves(std::move(after), span, halvings + 1);
+    return;
+  }
+  const Eigen::Vector2d center = patch.box.center();
+  Leaf leaf{bound_of(patch, evaluator_.jet(center.x(), center.y())), span};
+  if (!(leaf.bound.bending() <= kMostBending) && halvings < kMostHalvings) {
+    Patch after = patch.halve(wider_direction(leaf.bound));
+    add_leaves(std::move(patch), span, halvings + 1);
+    add_leaves(std::move(after), span, halvings + 1);
+    return;
+  }
+  leaves_.push_back(std::move(leaf));
+}
+
+std::int32_t SurfaceIndex::add_nodes(std::vector<std::int32_t>& order, std::size_t begin,
+                                     std::size_t end) {
+  if (end - begin == 1) return ~order[begin];
+  const auto middle_of = [this](std::int32_t i) {
+    const PatchBound& bound = leaves_[static_cast<std::size_t>(i)].bound;
+    return Vector3d(bound.low + bound.high);
+  };
+  Vector3d low = middle_of(order[begin]);
+  Vector3d high = low;
+  for (std::size_t i = begin; i < end; ++i) {
+    low = low.cwiseMin(middle_of(order[i]));
+    high = high.cwiseMax(middle_of(order[i]));
+  }
+  Eigen::Index axis = 0;
+  (high - low).maxCoeff(&axis);
+  const std::size_t middle = begin + (end - begin) / 2;
+  const auto at = [&order](std::size_t i) {
+    return order.begin() + static_cast<std::ptrdiff_t>(i);
+  };
+  std::nth_element(at(begin), at(middle), at(end), [&](std::int32_t a, std::int32_t b) {
+    const double x = middle_of(a)[axis];
+    const double y = middle_of(b)[axis];
+    return x < y || (x == y && a < b);  // a total order, so that every run gives the same tree
+  });
+  const auto number = nodes_.size();
+  nodes_.emplace_back();
+  const std::array<std::size_t, 3> edge = {begin, middle, end};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const std::int32_t child = add_nodes(order, edge[side], edge[side + 1]);
+    Node& node = nodes_[number];
+    node.child[side] = child;
+    if (child < 0) {
+      const PatchBound& bound = leaves_[static_cast<std::size_t>(~child)].bound;
+      node.low[side] = bound.low;
+      node.high[side] = bound.high;
+    } else {
+      const Node& below = nodes_[static_cast<std::size_t>(child)];
+      node.low[side] = below.low[0].cwiseMin(below.low[1]);
+      node.high[side] = below.high[0].cwiseMax(below.high[1]);
+    }
+  }
+  return static_cast<std::int32_t>(number);
+}
+
+Patch SurfaceIndex::patch(const Leaf& leaf) const {
+  Patch patch = grid_.patch(leaf.span[0], leaf.span[1]);
+  for (int d = 0; d < 2; ++d) {
+    const auto cut_at = [&](double u) {
+      const double t = (u - patch.box.low[d]) / (patch.box.high[d] - patch.box.low[d]);
+      Patch after{patch.box, patch.shape, std::vector<double>(patch.net.size())};
+      cut_bezier(patch.shape, d, t, patch.net, after.net);
+      patch.box.high[d] = after.box.low[d] = u;
+      return after;
+    };
+    if (leaf.bound.box.high[d] < patch.box.high[d]) cut_at(leaf.bound.box.high[d]);
+    if (leaf.bound.box.low[d] > patch.box.low[d]) patch = cut_at(leaf.bound.box.low[d]);
+  }
+  return patch;
+}
+
+}  // namespace limn

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "modeler/bspline/surface_evaluator.hpp"
+#include "modeler/surface/patch.hpp"
+
+namespace limn {
+
+/// The point of a surface that is closest to another.
+struct ClosestPoint {
+  Eigen::Vector2d parameter;  ///< (u, v)
+  Eigen::Vector3d point;
+  double distance = 0;  ///< mm, 0 or more
+  /// No point of the surface is nearer than distance - slack. Below kGeometric but for places that
+  /// a curve or an area of the surface has nearly the same distance to, where the search is cut
+  /// off.
+  double slack = 0;
+};
+
+/// A half-line: origin + t direction, 0 <= t <= most. The direction need not be of length 1.
+struct Ray {
+  Eigen::Vector3d origin;
+  Eigen::Vector3d direction;
+  double most = 1e300;
+};
+
+/// Where a ray meets a surface.
+struct RayHit {
+  double t = 0;
+  Eigen::Vector2d parameter;
+  Eigen::Vector3d point;
+  /// The ray only touches here: it passes the surface within kGeometric, and no root is certain.
+  bool tangent = false;
+};
+
+struct RayHits {
+  std::vector<RayHit> hits;  ///< ascending t, those within kGeometric of each other once
+  /// Whether these are all. False where the ray runs along the surface: hits then holds places of
+  /// the run, the first among them.
+  bool complete = true;
+};
+
+/// A surface with a hierarchy of certified bounds of its parts, for questions about the whole of
+/// it.
+///
+/// Leaves are patches small enough for Newton's iteration to be safe in nearly all of them; a query
+/// proves for each that it cannot hold the answer, or that there is one at most and finds it, or
+/// cuts it in halves. Answers are therefore those of the whole surface, not of a sampling.
+///
+/// O(control points) in memory and time to make, about logarithmic to ask. Immutable after
+/// construction, so any number of threads may ask. Deterministic.
+class SurfaceIndex {
+ public:
+  explicit SurfaceIndex(BsplineSurface surface);
+
+  const BsplineSurface& surface() const noexcept { return evaluator_.surface(); }
+  const SurfaceEvaluator& evaluator() const noexcept { return evaluator_; }
+
+  /// One of them where several are equally close, always the same. Precondition: p is finite.
+  ClosestPoint closest_point(const Eigen::Vector3d& p) const;
+
+  /// None where the ray misses. Precondition: finite, a direction that is not zero.
+  std::optional<RayHit> first_hit(const Ray& ray) const;
+  RayHits all_hits(const Ray& ray) const;
+
+  /// A leaf: a part of one span of each direction.
+  struct Leaf {
+    PatchBound bound;
+    std::array<std::int32_t, 2> span;  ///< of the grid
+  };
+  /// Inner nodes: the boxes of two children each. A child below 0 is leaf ~child.
+  struct Node {
+    std::array<Eigen::Vector3d, 2> low;
+    std::array<Eigen::Vector3d, 2> high;
+    std::array<std::int32_t, 2> child;
+  };
+  const std::vector<Leaf>& leaves() const noexcept { return leaves_; }
+  /// The root is first; empty where there is one leaf only.
+  const std::vector<Node>& nodes() const noexcept { return nodes_; }
+  /// The Bézier form of a leaf.
+  Patch patch(const Leaf& leaf) const;
+
+ private:
+  void add_leaves(Patch patch, std::array<std::int32_t, 2> span, int halvings);
+  std::int32_t add_nodes(std::vector<std::int32_t>& order, std::size_t begin, std::size_t end);
+
+  SurfaceEvaluator evaluator_;
+  PatchGrid grid_;
+  std::vector<Leaf> leaves_;
+  std::vector<Node> nodes_;
+};
+
+/// The direction in which halving a patch flattens it more.
+int wider_direction(const PatchBound& bound) noexcept;
+
+}  // namespace limn
