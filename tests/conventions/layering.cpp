@@ -86,8 +86,8 @@ const std::vector<Layer>& layers() {
       {"tests",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
        {"gtest/", "gmock/", "benchmark/", "sanitizer/", "Eigen/", "nlohmann/", "cairo",
-        "opencascade", "sisl.h", "spnav.h", "umockdev.h", "posix", "dlfcn.h", "linux/", "netinet/",
-        "sys/"}},
+        "opencascade", "sisl.h", "embree3/", "spnav.h", "umockdev.h", "posix", "dlfcn.h", "linux/",
+        "netinet/", "sys/"}},
   };
   return table;
 }
