@@ -77,6 +77,20 @@ ControlPointMap make_map(const KnotVector& from, const KnotVector& to, RowOf row
   return ControlPointMap(from.basis_count(), width, std::move(first), std::move(coefficients));
 }
 
+/// The map to knots of the same degree that hold all old ones where both have a domain.
+ControlPointMap refining_map(const KnotVector& from, const KnotVector& to) {
+  const int p = from.degree();
+  const double* knot = to.values().data();
+  return make_map(from, to, [&](int i) {
+    const Place place = place_of(from, knot[i], knot[i + p + 1]);
+    std::array<double, kMostBasis> arguments;
+    std::copy_n(knot + i + 1, p, arguments.begin());
+    if (!place.ascending) std::reverse(arguments.begin(), arguments.begin() + p);
+    return std::pair(place.span,
+                     blossom(from, place.span, {arguments.data(), static_cast<std::size_t>(p)}));
+  });
+}
+
 /// The knots of one period, [begin, end), the seam's all at the front.
 std::vector<double> knots_of_round(const KnotVector& knots) {
   const auto& values = knots.values();
@@ -228,16 +242,7 @@ Expected<KnotRefinement> insert_knots(const KnotVector& knots, std::span<const d
   }
   auto to = with_knots(knots, {added.begin(), added.end()});
   if (!to) return tl::unexpected(std::move(to.error()));
-  const int p = knots.degree();
-  const double* knot = to->values().data();
-  auto map = make_map(knots, *to, [&](int i) {
-    const Place place = place_of(knots, knot[i], knot[i + p + 1]);
-    std::array<double, kMostBasis> arguments;
-    std::copy_n(knot + i + 1, p, arguments.begin());
-    if (!place.ascending) std::reverse(arguments.begin(), arguments.begin() + p);
-    return std::pair(place.span,
-                     blossom(knots, place.span, {arguments.data(), static_cast<std::size_t>(p)}));
-  });
+  auto map = refining_map(knots, *to);
   return KnotRefinement{*std::move(to), std::move(map)};
 }
 
@@ -256,6 +261,74 @@ Expected<KnotRefinement> elevate_degree(const KnotVector& knots, int by) {
     out = {std::move(once.knots), compose(once.map, out.map)};
   }
   return out;
+}
+
+Expected<KnotRefinement> segment_knots(const KnotVector& knots, double low, double high) {
+  if (!(knots.domain_begin() <= low && low < high && high <= knots.domain_end())) {
+    return fail(ErrorCode::kOutOfRange, "parameters",
+                "a part must begin before it ends, and lie in the domain",
+                "choose two parameters of the domain in ascending order");
+  }
+  std::vector<double> interior;
+  for (const double u : knots.values()) {
+    if (u > low && u < high) interior.push_back(u);
+  }
+  const int p = knots.degree();
+  auto to = KnotVector::make_clamped(p, low, high, interior);
+  if (!to) return tl::unexpected(std::move(to.error()));
+  auto map = refining_map(knots, *to);
+  return KnotRefinement{*std::move(to), std::move(map)};
+}
+
+KnotRefinement bezier_knots(const KnotVector& knots) {
+  const int p = knots.degree();
+  std::vector<double> interior;
+  for (const double u : knots.breakpoints()) {
+    if (u == knots.domain_begin() || u == knots.domain_end()) continue;
+    const int times = std::max(knots.multiplicity(u), std::max(p, 1));
+    interior.insert(interior.end(), static_cast<std::size_t>(times), u);
+  }
+  // More of the values that were legal stays legal.
+  KnotVector to = *KnotVector::make_clamped(p, knots.domain_begin(), knots.domain_end(), interior);
+  auto map = refining_map(knots, to);
+  return {std::move(to), std::move(map)};
+}
+
+Expected<KnotRefinement> reverse_knots(const KnotVector& knots) {
+  const double begin = knots.domain_begin();
+  const double end = knots.domain_end();
+  const double sum = begin + end;
+  const auto turned = [&](double u) { return u == begin ? end : u == end ? begin : sum - u; };
+  const int n = knots.basis_count();
+  std::vector<double> values;
+  // Function i of the turned direction is function last - i of this one; a periodic one counts from
+  // the last of equal seam knots either way.
+  int last = n - 1;
+  Expected<KnotVector> to = knots;
+  if (knots.is_periodic()) {
+    const auto round = knots_of_round(knots);
+    const auto seam = std::count(round.begin(), round.end(), begin);
+    values.assign(static_cast<std::size_t>(seam), begin);
+    for (std::size_t i = round.size(); i-- > static_cast<std::size_t>(seam);) {
+      values.push_back(turned(round[i]));
+    }
+    last = n - static_cast<int>(seam);
+    to = KnotVector::make_periodic(knots.degree(), values, end);
+  } else {
+    for (std::size_t i = knots.values().size(); i-- > 0;)
+      values.push_back(turned(knots.values()[i]));
+    to = KnotVector::make(knots.degree(), std::move(values));
+  }
+  if (!to) return tl::unexpected(std::move(to.error()));
+  const int round_count = knots.is_periodic() ? n - knots.degree() : n;
+  std::vector<int> first;
+  for (int i = 0; i < n; ++i) {
+    const int old = (last - i) % round_count;
+    first.push_back(old < 0 ? old + round_count : old);
+  }
+  return KnotRefinement{*std::move(to),
+                        ControlPointMap(n, 1, std::move(first),
+                                        std::vector<double>(static_cast<std::size_t>(n), 1.0))};
 }
 
 std::vector<double> bezier_extraction(const KnotVector& knots, int span) {

@@ -67,6 +67,19 @@ Expected<KnotRefinement> insert_knots(const KnotVector& knots, std::span<const d
 /// Error: kOutOfRange where the degree would pass KnotVector::kMaxDegree.
 Expected<KnotRefinement> elevate_degree(const KnotVector& knots, int by);
 
+/// The part of a direction on [low, high], clamped there. The map's rows are convex combinations.
+/// Works on periodic directions, too, whose part is open. [PT97 ch. 5.3]
+/// Errors: kOutOfRange unless domain_begin() <= low < high <= domain_end().
+Expected<KnotRefinement> segment_knots(const KnotVector& knots, double low, double high);
+
+/// Clamped, with all knots inside the domain of multiplicity max(degree, 1): each span's control
+/// points are its Bézier points then, the first shared with the span before. Breaks stay breaks.
+KnotRefinement bezier_knots(const KnotVector& knots);
+
+/// The direction run through backwards, u becoming domain_begin() + domain_end() - u.
+/// Error: kOutOfRange where rounding makes knots meet.
+Expected<KnotRefinement> reverse_knots(const KnotVector& knots);
+
 /// The Bézier control points of one span from the control points that shape it:
 ///
 ///     Q_r = sum_k out[r (p + 1) + k] P_{span-p+k},    0 <= r, k <= p.

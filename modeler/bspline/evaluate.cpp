@@ -36,8 +36,8 @@ class OrderBox {
 ///
 /// A direction that the spline has not counts as one of degree 0 with one control point.
 template <std::size_t kWidth>
-void derive_coordinates(const SplineData& spline, const double* u, const int* orders,
-                        const OrderBox& box, double* out) noexcept {
+void derive_coordinates(const SplineData& spline, const int* spans, const double* u,
+                        const int* orders, const OrderBox& box, double* out) noexcept {
   std::array<std::array<double, kMostBasis * kMostBasis>, kD> basis;
   std::array<int, kD> order{};  // computed; above the degree all is zero
   std::array<int, kD> degree{};
@@ -47,13 +47,12 @@ void derive_coordinates(const SplineData& spline, const double* u, const int* or
   for (int d = 0; d < spline.directions(); ++d) {
     const auto sd = static_cast<std::size_t>(d);
     const KnotVector& knots = spline.knots(d);
-    const double x = knots.clamp(u[d]);
-    const int span = knots.find_span(x);
+    const int span = spans[d];
     degree[sd] = knots.degree();
     order[sd] = std::min(orders[d], knots.degree());
     first[sd] = static_cast<std::size_t>(span - knots.degree());
     line_count[sd] = static_cast<std::size_t>(knots.basis_count());
-    knots.basis_derivatives(span, x, order[sd], basis[sd]);
+    knots.basis_derivatives(span, u[d], order[sd], basis[sd]);
   }
   std::fill_n(out, box.size() * kWidth, 0.0);
 
@@ -127,10 +126,11 @@ void divide(const OrderBox& box, const double* homogeneous, double* out) noexcep
 }
 
 template <std::size_t kDimension>
-void evaluate_as(const SplineData& spline, const double* u, const int* orders,
+void evaluate_as(const SplineData& spline, const int* spans, const double* u, const int* orders,
                  double* out) noexcept {
   const OrderBox box(spline.directions(), orders);
-  if (!spline.is_rational()) return derive_coordinates<kDimension>(spline, u, orders, box, out);
+  if (!spline.is_rational())
+    return derive_coordinates<kDimension>(spline, spans, u, orders, box, out);
   constexpr std::size_t kWidth = kDimension + 1;
   std::array<double, kMostOnStack * kWidth> on_stack;
   std::vector<double> on_heap;
@@ -139,35 +139,47 @@ void evaluate_as(const SplineData& spline, const double* u, const int* orders,
     on_heap.resize(box.size() * kWidth);
     homogeneous = on_heap.data();
   }
-  derive_coordinates<kWidth>(spline, u, orders, box, homogeneous);
+  derive_coordinates<kWidth>(spline, spans, u, orders, box, homogeneous);
   divide<kWidth>(box, homogeneous, out);
 }
 
 }  // namespace
 
-void evaluate(const SplineData& spline, const double* u, const int* orders, double* out) noexcept {
+void evaluate_in_spans(const SplineData& spline, const int* spans, const double* u,
+                       const int* orders, double* out) noexcept {
   switch (spline.dimension()) {
     case 1:
-      return evaluate_as<1>(spline, u, orders, out);
+      return evaluate_as<1>(spline, spans, u, orders, out);
     case 2:
-      return evaluate_as<2>(spline, u, orders, out);
+      return evaluate_as<2>(spline, spans, u, orders, out);
     case 3:
-      return evaluate_as<3>(spline, u, orders, out);
+      return evaluate_as<3>(spline, spans, u, orders, out);
     case 4:
-      return evaluate_as<4>(spline, u, orders, out);
+      return evaluate_as<4>(spline, spans, u, orders, out);
     case 5:
-      return evaluate_as<5>(spline, u, orders, out);
+      return evaluate_as<5>(spline, spans, u, orders, out);
     case 6:
-      return evaluate_as<6>(spline, u, orders, out);
+      return evaluate_as<6>(spline, spans, u, orders, out);
     case 7:
-      return evaluate_as<7>(spline, u, orders, out);
+      return evaluate_as<7>(spline, spans, u, orders, out);
     case 8:
-      return evaluate_as<8>(spline, u, orders, out);
+      return evaluate_as<8>(spline, spans, u, orders, out);
     case 9:
-      return evaluate_as<9>(spline, u, orders, out);
+      return evaluate_as<9>(spline, spans, u, orders, out);
     default:
-      return evaluate_as<10>(spline, u, orders, out);
+      return evaluate_as<10>(spline, spans, u, orders, out);
   }
+}
+
+void evaluate(const SplineData& spline, const double* u, const int* orders, double* out) noexcept {
+  std::array<double, kD> inside;
+  std::array<int, kD> spans;
+  for (int d = 0; d < spline.directions(); ++d) {
+    const auto sd = static_cast<std::size_t>(d);
+    inside[sd] = spline.knots(d).clamp(u[d]);
+    spans[sd] = spline.knots(d).find_span(inside[sd]);
+  }
+  evaluate_in_spans(spline, spans.data(), inside.data(), orders, out);
 }
 
 }  // namespace limn

@@ -16,4 +16,9 @@ class SplineData;
 /// Allocates only for rational splines and that product above 64.
 void evaluate(const SplineData& spline, const double* u, const int* orders, double* out) noexcept;
 
+/// The same of one polynomial piece: `spans` has a span of KnotVector::find_span() a direction,
+/// whose polynomials go on outside it. So limits from either side of a knot may be had.
+void evaluate_in_spans(const SplineData& spline, const int* spans, const double* u,
+                       const int* orders, double* out) noexcept;
+
 }  // namespace limn

@@ -71,6 +71,22 @@ Expected<SplineData> elevate_degree(const SplineData& spline, int direction, int
   return refine(spline, direction, *refinement);
 }
 
+Expected<SplineData> segment(const SplineData& spline, int direction, double low, double high) {
+  auto part = segment_knots(spline.knots(direction), low, high);
+  if (!part) return tl::unexpected(std::move(part.error()));
+  return refine(spline, direction, *part);
+}
+
+Expected<SplineData> reverse(const SplineData& spline, int direction) {
+  auto turned = reverse_knots(spline.knots(direction));
+  if (!turned) return tl::unexpected(std::move(turned.error()));
+  return refine(spline, direction, *turned);
+}
+
+Expected<SplineData> to_bezier(const SplineData& spline, int direction) {
+  return refine(spline, direction, bezier_knots(spline.knots(direction)));
+}
+
 Expected<SplineData> move_seam(const SplineData& spline, int direction, double u) {
   const KnotVector& knots = spline.knots(direction);
   LIMN_EXPECT(knots.is_periodic() && u >= knots.domain_begin() && u < knots.domain_end());

@@ -29,6 +29,16 @@ Expected<SplineData> elevate_degree(const SplineData& spline, int direction, int
 /// insert_knots().
 Expected<SplineData> move_seam(const SplineData& spline, int direction, double u);
 
+/// The part on [low, high] of one direction, clamped there; of a periodic direction it is open.
+/// Errors as segment_knots().
+Expected<SplineData> segment(const SplineData& spline, int direction, double low, double high);
+
+/// Run through backwards in one direction: u becomes domain_begin() + domain_end() - u.
+Expected<SplineData> reverse(const SplineData& spline, int direction);
+
+/// In Bézier form in one direction (bezier_knots()): clamped and open, each span by itself.
+Expected<SplineData> to_bezier(const SplineData& spline, int direction);
+
 template <int kDirections, int kDimension>
 Expected<TensorSpline<kDirections, kDimension>> refine(
     const TensorSpline<kDirections, kDimension>& spline, int direction,
@@ -50,6 +60,22 @@ template <int kDirections, int kDimension>
 Expected<TensorSpline<kDirections, kDimension>> move_seam(
     const TensorSpline<kDirections, kDimension>& spline, int direction, double u) {
   return TensorSpline<kDirections, kDimension>::from(move_seam(spline.data(), direction, u));
+}
+
+template <int kDirections, int kDimension>
+Expected<TensorSpline<kDirections, kDimension>> segment(
+    const TensorSpline<kDirections, kDimension>& spline, int direction, double low, double high) {
+  return TensorSpline<kDirections, kDimension>::from(segment(spline.data(), direction, low, high));
+}
+template <int kDirections, int kDimension>
+Expected<TensorSpline<kDirections, kDimension>> reverse(
+    const TensorSpline<kDirections, kDimension>& spline, int direction) {
+  return TensorSpline<kDirections, kDimension>::from(reverse(spline.data(), direction));
+}
+template <int kDirections, int kDimension>
+Expected<TensorSpline<kDirections, kDimension>> to_bezier(
+    const TensorSpline<kDirections, kDimension>& spline, int direction) {
+  return TensorSpline<kDirections, kDimension>::from(to_bezier(spline.data(), direction));
 }
 
 }  // namespace limn

@@ -51,22 +51,28 @@ LIMN_KERNEL void horner(const double* row, int degree, double t, double per_half
 }
 
 template <int kOrder>
-LIMN_KERNEL void evaluate_functions(const BasisTable& table, double u, Functions& out) noexcept {
-  const KnotVector& knots = table.knots();
-  const double x = knots.clamp(u);
-  const int i = knots.find_span(x) - knots.degree();
+LIMN_KERNEL void evaluate_functions_in(const BasisTable& table, int span_number, double x,
+                                       Functions& out) noexcept {
+  const int degree = table.knots().degree();
+  const int i = span_number - degree;
   const BasisTable::Span& span = table.span(i);
   const double t = (x - span.middle) * span.per_half;
   out.first = span.first;
   const double* row = table.coefficients(i);
   switch (table.padded_count()) {
     case 4:
-      return horner<kOrder, 1>(row, knots.degree(), t, span.per_half, out.value);
+      return horner<kOrder, 1>(row, degree, t, span.per_half, out.value);
     case 8:
-      return horner<kOrder, 2>(row, knots.degree(), t, span.per_half, out.value);
+      return horner<kOrder, 2>(row, degree, t, span.per_half, out.value);
     default:
-      return horner<kOrder, 3>(row, knots.degree(), t, span.per_half, out.value);
+      return horner<kOrder, 3>(row, degree, t, span.per_half, out.value);
   }
+}
+
+template <int kOrder>
+LIMN_KERNEL void evaluate_functions(const BasisTable& table, double u, Functions& out) noexcept {
+  const double x = table.knots().clamp(u);
+  evaluate_functions_in<kOrder>(table, table.knots().find_span(x), x, out);
 }
 
 LIMN_KERNEL void store(const Lanes& from, Eigen::Vector3d& to) noexcept {
@@ -95,86 +101,104 @@ struct Prepared {
   const BasisTable* v;
 };
 
-/// Jets of a surface with kWidth coordinates a control point and degree kDegree in u.
+/// The jet of a surface with kWidth coordinates a control point and degree kDegree in u, from the
+/// functions of both directions.
 template <int kWidth, int kDegree>
-LIMN_KERNEL void evaluate_jets(const Prepared& surface, const Eigen::Vector2d* at,
-                               std::size_t count, SurfaceJet* out) noexcept {
+LIMN_KERNEL void sum_jet(const Prepared& surface, const Functions& fu, const Functions& fv,
+                         SurfaceJet& out) noexcept {
   const PagedArray& coordinates = surface.data->coordinates();
   const auto row_length = static_cast<std::size_t>(surface.data->knots(0).basis_count());
   const int degree_v = surface.data->knots(1).degree();
   constexpr std::size_t kRun = (kDegree + 1) * kWidth;
   double scratch[kRun + PagedArray::kPadding];
+  const Lanes zero = {0, 0, 0, 0};
+  Lanes s = zero, u = zero, v = zero, uu = zero, uv = zero, vv = zero;
+  std::size_t first =
+      static_cast<std::size_t>(fv.first) * row_length + static_cast<std::size_t>(fu.first);
+  for (int j = 0; j <= degree_v; ++j, first += row_length) {
+    const double* p = coordinates.run(first * kWidth, kRun, scratch);
+    Lanes line0 = zero, line1 = zero, line2 = zero;
+    for (int k = 0; k <= kDegree; ++k) {
+      Lanes x;
+      load(p + k * kWidth, x);
+      line0 += x * fu.value[0][k];
+      line1 += x * fu.value[1][k];
+      line2 += x * fu.value[2][k];
+    }
+    const double b0 = fv.value[0][j];
+    const double b1 = fv.value[1][j];
+    s += line0 * b0;
+    u += line1 * b0;
+    uu += line2 * b0;
+    v += line0 * b1;
+    uv += line1 * b1;
+    vv += line0 * fv.value[2][j];
+  }
+  if constexpr (kWidth == 4) divide(s, u, v, uu, uv, vv);
+  store(s, out.point);
+  store(u, out.du);
+  store(v, out.dv);
+  store(uu, out.duu);
+  store(uv, out.duv);
+  store(vv, out.dvv);
+}
+
+/// Jets at `count` places: found where spans is null, else of the piece of those spans.
+template <int kWidth, int kDegree>
+LIMN_KERNEL void evaluate_jets(const Prepared& surface, const int* spans, const Eigen::Vector2d* at,
+                               std::size_t count, SurfaceJet* out) noexcept {
   Functions fu;
   Functions fv;
+  if (spans != nullptr) {
+    for (std::size_t i = 0; i < count; ++i) {
+      evaluate_functions_in<2>(*surface.u, spans[0], at[i].x(), fu);
+      evaluate_functions_in<2>(*surface.v, spans[1], at[i].y(), fv);
+      sum_jet<kWidth, kDegree>(surface, fu, fv, out[i]);
+    }
+    return;
+  }
   for (std::size_t i = 0; i < count; ++i) {
     evaluate_functions<2>(*surface.u, at[i].x(), fu);
     evaluate_functions<2>(*surface.v, at[i].y(), fv);
-    const Lanes zero = {0, 0, 0, 0};
-    Lanes s = zero, u = zero, v = zero, uu = zero, uv = zero, vv = zero;
-    std::size_t first =
-        static_cast<std::size_t>(fv.first) * row_length + static_cast<std::size_t>(fu.first);
-    for (int j = 0; j <= degree_v; ++j, first += row_length) {
-      const double* p = coordinates.run(first * kWidth, kRun, scratch);
-      Lanes line0 = zero, line1 = zero, line2 = zero;
-      for (int k = 0; k <= kDegree; ++k) {
-        Lanes x;
-        load(p + k * kWidth, x);
-        line0 += x * fu.value[0][k];
-        line1 += x * fu.value[1][k];
-        line2 += x * fu.value[2][k];
-      }
-      const double b0 = fv.value[0][j];
-      const double b1 = fv.value[1][j];
-      s += line0 * b0;
-      u += line1 * b0;
-      uu += line2 * b0;
-      v += line0 * b1;
-      uv += line1 * b1;
-      vv += line0 * fv.value[2][j];
-    }
-    if constexpr (kWidth == 4) divide(s, u, v, uu, uv, vv);
-    store(s, out[i].point);
-    store(u, out[i].du);
-    store(v, out[i].dv);
-    store(uu, out[i].duu);
-    store(uv, out[i].duv);
-    store(vv, out[i].dvv);
+    sum_jet<kWidth, kDegree>(surface, fu, fv, out[i]);
   }
 }
 
 template <int kWidth>
-LIMN_KERNEL void evaluate_jets_of(const Prepared& surface, const Eigen::Vector2d* at,
-                                  std::size_t count, SurfaceJet* out) noexcept {
+LIMN_KERNEL void evaluate_jets_of(const Prepared& surface, const int* spans,
+                                  const Eigen::Vector2d* at, std::size_t count,
+                                  SurfaceJet* out) noexcept {
   switch (surface.data->knots(0).degree()) {
     case 0:
-      return evaluate_jets<kWidth, 0>(surface, at, count, out);
+      return evaluate_jets<kWidth, 0>(surface, spans, at, count, out);
     case 1:
-      return evaluate_jets<kWidth, 1>(surface, at, count, out);
+      return evaluate_jets<kWidth, 1>(surface, spans, at, count, out);
     case 2:
-      return evaluate_jets<kWidth, 2>(surface, at, count, out);
+      return evaluate_jets<kWidth, 2>(surface, spans, at, count, out);
     case 3:
-      return evaluate_jets<kWidth, 3>(surface, at, count, out);
+      return evaluate_jets<kWidth, 3>(surface, spans, at, count, out);
     case 4:
-      return evaluate_jets<kWidth, 4>(surface, at, count, out);
+      return evaluate_jets<kWidth, 4>(surface, spans, at, count, out);
     case 5:
-      return evaluate_jets<kWidth, 5>(surface, at, count, out);
+      return evaluate_jets<kWidth, 5>(surface, spans, at, count, out);
     case 6:
-      return evaluate_jets<kWidth, 6>(surface, at, count, out);
+      return evaluate_jets<kWidth, 6>(surface, spans, at, count, out);
     case 7:
-      return evaluate_jets<kWidth, 7>(surface, at, count, out);
+      return evaluate_jets<kWidth, 7>(surface, spans, at, count, out);
     case 8:
-      return evaluate_jets<kWidth, 8>(surface, at, count, out);
+      return evaluate_jets<kWidth, 8>(surface, spans, at, count, out);
     default:
-      return evaluate_jets<kWidth, 9>(surface, at, count, out);
+      return evaluate_jets<kWidth, 9>(surface, spans, at, count, out);
   }
 }
 
 LIMN_ON_EACH_PROCESSOR(jets_of,
-                       (const Prepared& surface, const Eigen::Vector2d* at, std::size_t count,
-                        SurfaceJet* out),
-                       (surface, at, count, out),
-                       surface.data->is_rational() ? evaluate_jets_of<4>(surface, at, count, out)
-                                                   : evaluate_jets_of<3>(surface, at, count, out))
+                       (const Prepared& surface, const int* spans, const Eigen::Vector2d* at,
+                        std::size_t count, SurfaceJet* out),
+                       (surface, spans, at, count, out),
+                       surface.data->is_rational()
+                           ? evaluate_jets_of<4>(surface, spans, at, count, out)
+                           : evaluate_jets_of<3>(surface, spans, at, count, out))
 
 /// Where a grid's parameters meet one direction.
 using FunctionList = std::vector<Functions>;
@@ -257,10 +281,15 @@ LIMN_ON_EACH_PROCESSOR(grid_of,
                        (surface, us, vs, lists_u, lists_v, curve, out),
                        evaluate_grid(surface, us, vs, lists_u, lists_v, curve, out))
 
+/// In the order of TensorSpline::derivatives() with orders 2, 2.
+SurfaceJet jet_of(const std::array<Eigen::Vector3d, 9>& d) noexcept {
+  return {d[0], d[1], d[3], d[2], d[4], d[6]};
+}
+
 SurfaceJet jet_of_any_degree(const BsplineSurface& surface, double u, double v) noexcept {
   std::array<Eigen::Vector3d, 9> d;
   surface.derivatives({u, v}, {2, 2}, d);
-  return {d[0], d[1], d[3], d[2], d[4], d[6]};
+  return jet_of(d);
 }
 
 }  // namespace
@@ -277,12 +306,26 @@ SurfaceJet SurfaceEvaluator::jet(double u, double v) const noexcept {
   return out;
 }
 
+SurfaceJet SurfaceEvaluator::jet_in_spans(const std::array<int, 2>& spans, double u,
+                                          double v) const noexcept {
+  const Eigen::Vector2d at(u, v);
+  if (!tables_[0].usable() || !tables_[1].usable()) {
+    constexpr std::array<int, 2> kOrders = {2, 2};
+    std::array<Eigen::Vector3d, 9> d;
+    evaluate_in_spans(surface_.data(), spans.data(), at.data(), kOrders.data(), d[0].data());
+    return bspline_detail::jet_of(d);
+  }
+  SurfaceJet out;
+  bspline_detail::jets_of({&surface_.data(), &tables_[0], &tables_[1]}, spans.data(), &at, 1, &out);
+  return out;
+}
+
 void SurfaceEvaluator::jets(std::span<const Eigen::Vector2d> at,
                             std::span<SurfaceJet> out) const noexcept {
   LIMN_EXPECT(at.size() == out.size());
   if (tables_[0].usable() && tables_[1].usable()) {
-    bspline_detail::jets_of({&surface_.data(), &tables_[0], &tables_[1]}, at.data(), at.size(),
-                            out.data());
+    bspline_detail::jets_of({&surface_.data(), &tables_[0], &tables_[1]}, nullptr, at.data(),
+                            at.size(), out.data());
     return;
   }
   for (std::size_t i = 0; i < at.size(); ++i) {

@@ -37,6 +37,10 @@ class SurfaceEvaluator {
   SurfaceJet jet(double u, double v) const noexcept;
   Eigen::Vector3d point(double u, double v) const noexcept { return jet(u, v).point; }
 
+  /// The jet of one polynomial piece, which goes on outside its spans (of KnotVector::find_span()):
+  /// limits from either side of a knot line.
+  SurfaceJet jet_in_spans(const std::array<int, 2>& spans, double u, double v) const noexcept;
+
   /// out[i] = the jet at (at[i].x(), at[i].y()). Precondition: equal sizes.
   void jets(std::span<const Eigen::Vector2d> at, std::span<SurfaceJet> out) const noexcept;
 

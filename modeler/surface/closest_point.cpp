@@ -38,6 +38,37 @@ Objective objective(const SurfaceJet& jet, const Vector3d& r) noexcept {
           jet.dv.dot(jet.dv) + r.dot(jet.dvv)};
 }
 
+/// Where the quadratic g . d + d H d / 2 is least for low <= d <= high. Its direction leads down,
+/// which a step of Newton's that is cut off at the box need not do.
+Vector2d least_step(const Objective& f, double det, const Vector2d& low,
+                    const Vector2d& high) noexcept {
+  const Vector2d free = Vector2d(f.uv * f.gradient.y() - f.vv * f.gradient.x(),
+                                 f.uv * f.gradient.x() - f.uu * f.gradient.y()) /
+                        det;
+  if ((free.array() >= low.array()).all() && (free.array() <= high.array()).all()) return free;
+  const auto value = [&f](const Vector2d& d) {
+    return f.gradient.dot(d) + 0.5 * (f.uu * d.x() * d.x() + f.vv * d.y() * d.y()) +
+           f.uv * d.x() * d.y();
+  };
+  Vector2d best(0, 0);
+  double least = std::numeric_limits<double>::infinity();
+  for (const double u : {low.x(), high.x()}) {
+    const double v = std::clamp(-(f.gradient.y() + f.uv * u) / f.vv, low.y(), high.y());
+    if (value({u, v}) < least) {
+      best = {u, v};
+      least = value(best);
+    }
+  }
+  for (const double v : {low.y(), high.y()}) {
+    const double u = std::clamp(-(f.gradient.x() + f.uv * v) / f.uu, low.x(), high.x());
+    if (value({u, v}) < least) {
+      best = {u, v};
+      least = value(best);
+    }
+  }
+  return best;
+}
+
 /// Whether f is strictly convex on all of the patch. In the coordinates that flatten the patch
 /// (PatchBound::flatten) the Hessian is J^T J + Q, Q_ab = r . S_ab. The first part is at least
 /// (1 - t)^2, where the tangents change by t along the tangent plane (off it, they only add); Q is
@@ -83,7 +114,7 @@ class ClosestSearch {
   };
   struct Later {
     double square;
-    const SurfaceIndex::Leaf* leaf;
+    const PatchBound* leaf;
   };
 
   void visit_nodes() {
@@ -112,12 +143,12 @@ class ClosestSearch {
     return square_distance(local, bound.frame_low, bound.frame_high);
   }
 
-  void visit_leaf(const SurfaceIndex::Leaf& leaf) {
-    const Vector3d r = leaf.bound.jet.point - p_;
-    const double least = least_square(leaf.bound, r);
-    if (least >= best_ || settle(leaf.bound, r)) return;
+  void visit_leaf(const PatchBound& leaf) {
+    const Vector3d r = leaf.jet.point - p_;
+    const double least = least_square(leaf, r);
+    if (least >= best_ || settle(leaf, r)) return;
     // Halving is dear, and what other leaves hold may spare it.
-    keep_if_better(leaf.bound);
+    keep_if_better(leaf);
     later_.push_back({least, &leaf});
   }
 
@@ -128,7 +159,7 @@ class ClosestSearch {
     for (const Later& next : later_) {
       if (next.square >= best_) return;
       Patch patch = index_.patch(*next.leaf);
-      if (!cannot_be_nearer(patch)) halve(std::move(patch), next.leaf->bound, 0);
+      if (!cannot_be_nearer(patch)) halve(std::move(patch), *next.leaf, 0);
     }
   }
 
@@ -139,14 +170,15 @@ class ClosestSearch {
     const ParameterBox& box = bound.box;
     const Vector2d edge = parameter_.cwiseMax(box.low).cwiseMin(box.high);
     if ((edge - parameter_).cwiseAbs().cwiseQuotient(box.half()).maxCoeff() < 4) {
-      return descend(box, edge, index_.evaluator().jet(edge.x(), edge.y()));
+      return descend(bound, edge, index_.jet(bound, edge));
     }
-    return descend(box, box.center(), bound.jet);
+    return descend(bound, box.center(), bound.jet);
   }
 
   /// Newton's iteration on f within a box, in which f is convex; keeps what is better than the
   /// best. Whether it converged.
-  bool descend(const ParameterBox& box, Vector2d at, SurfaceJet jet) {
+  bool descend(const PatchBound& bound, Vector2d at, SurfaceJet jet) {
+    const ParameterBox& box = bound.box;
     double before = std::numeric_limits<double>::infinity();
     Vector2d last = at;
     for (int step = 0; step < kMostSteps; ++step) {
@@ -162,7 +194,7 @@ class ClosestSearch {
         if ((at - last).cwiseAbs().cwiseQuotient(box.half()).maxCoeff() < kRoundingStep)
           return true;
         at = 0.5 * (at + last);
-        jet = index_.evaluator().jet(at.x(), at.y());
+        jet = index_.jet(bound, at);
         continue;
       }
       before = f;
@@ -175,35 +207,15 @@ class ClosestSearch {
                               here.gradient[d] * (box.high[d] - at[d]));
       }
       if (least >= best_) return true;
-      // Coordinates at an edge that the gradient pushes against stay there.
-      const auto held = [&](Eigen::Index d) {
-        return (at[d] <= box.low[d] && here.gradient[d] > 0) ||
-               (at[d] >= box.high[d] && here.gradient[d] < 0);
-      };
-      const bool hold_u = held(0);
-      const bool hold_v = held(1);
-      if (hold_u && hold_v) return true;
-      Vector2d move(0, 0);
       const double det = here.uu * here.vv - here.uv * here.uv;
-      if (!hold_u && !hold_v) {
-        if (!(here.uu > 0 && det > 0)) return false;
-        move = Vector2d(here.uv * here.gradient.y() - here.vv * here.gradient.x(),
-                        here.uv * here.gradient.x() - here.uu * here.gradient.y()) /
-               det;
-      } else if (hold_v) {
-        if (!(here.uu > 0)) return false;
-        move.x() = -here.gradient.x() / here.uu;
-      } else {
-        if (!(here.vv > 0)) return false;
-        move.y() = -here.gradient.y() / here.vv;
-      }
-      const Vector2d next = (at + move).cwiseMax(box.low).cwiseMin(box.high);
+      if (!(here.uu > 0 && det > 0)) return false;
+      const Vector2d next = at + least_step(here, det, box.low - at, box.high - at);
       const Vector2d moved = next - at;
       at = next;
       // Quadratic convergence: what a step of this size leaves is below rounding.
       constexpr double kLastStep = 1e-6;
       const bool last_one = moved.cwiseAbs().cwiseQuotient(box.half()).maxCoeff() < kLastStep;
-      jet = index_.evaluator().jet(at.x(), at.y());
+      jet = index_.jet(bound, at);
       if (last_one) {
         const double end = (jet.point - p_).squaredNorm();
         if (end < best_) {
@@ -228,8 +240,7 @@ class ClosestSearch {
     double least[2];
     Patch* patches[2] = {&patch, &after};
     for (int i = 0; i < 2; ++i) {
-      const Vector2d center = patches[i]->box.center();
-      bounds[i] = bound_of(*patches[i], index_.evaluator().jet(center.x(), center.y()));
+      bounds[i] = index_.bound(*patches[i]);
       least[i] = least_square(bounds[i], bounds[i].jet.point - p_);
     }
     const int near = least[1] < least[0] ? 1 : 0;

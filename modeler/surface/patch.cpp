@@ -184,51 +184,53 @@ bool Patch::has_positive_weights() const noexcept {
 }
 
 Patch Patch::halve(int direction) {
-  Patch after{box, shape, std::vector<double>(net.size())};
+  Patch after{box, spans, shape, std::vector<double>(net.size())};
   cut_bezier(shape, direction, 0.5, net, after.net);
   box.high[direction] = after.box.low[direction] = box.center()[direction];
   return after;
 }
 
-PatchGrid::PatchGrid(const BsplineSurface& surface)
-    : surface_(surface), spans_{make_spans(surface.knots(0)), make_spans(surface.knots(1))} {}
-
-std::vector<PatchGrid::Span> PatchGrid::make_spans(const KnotVector& knots) {
-  std::vector<Span> out;
-  const auto& values = knots.values();
-  for (int s = knots.degree(); s < knots.basis_count(); ++s) {
-    const double low = values[static_cast<std::size_t>(s)];
-    const double high = values[static_cast<std::size_t>(s) + 1];
-    if (low < high) out.push_back({low, high, s - knots.degree(), bezier_extraction(knots, s)});
+PatchGrid::PatchGrid(const BsplineSurface& surface) : surface_(surface) {
+  for (std::size_t d = 0; d < 2; ++d) {
+    const KnotVector& knots = surface.knots(static_cast<int>(d));
+    const auto& values = knots.values();
+    for (int s = knots.degree(); s < knots.basis_count(); ++s) {
+      const auto at = static_cast<std::size_t>(s);
+      extractions_[d].emplace_back();
+      if (!(values[at] < values[at + 1])) continue;
+      spans_[d].push_back(s);
+      extractions_[d].back() = bezier_extraction(knots, s);
+    }
   }
-  return out;
 }
 
-Patch PatchGrid::patch(int u, int v) const {
-  const Span& in_u = spans_[0][static_cast<std::size_t>(u)];
-  const Span& in_v = spans_[1][static_cast<std::size_t>(v)];
+Patch PatchGrid::patch(const std::array<int, 2>& spans) const {
   Patch out;
-  out.box.low = {in_u.low, in_v.low};
-  out.box.high = {in_u.high, in_v.high};
-  const int count_u = surface_.knots(0).degree() + 1;
-  const int count_v = surface_.knots(1).degree() + 1;
-  out.shape = {static_cast<int>(kWidth), {count_u, count_v, 1}};
+  out.spans = spans;
+  out.shape.width = static_cast<int>(kWidth);
+  std::array<std::size_t, 2> first{};
+  for (std::size_t d = 0; d < 2; ++d) {
+    const KnotVector& knots = surface_.knots(static_cast<int>(d));
+    const auto span = static_cast<std::size_t>(spans[d]);
+    out.box.low[static_cast<Eigen::Index>(d)] = knots.values()[span];
+    out.box.high[static_cast<Eigen::Index>(d)] = knots.values()[span + 1];
+    out.shape.count[d] = knots.degree() + 1;
+    first[d] = span - static_cast<std::size_t>(knots.degree());
+  }
   out.net.resize(out.shape.size());
   const SplineData& data = surface_.data();
   const auto width = static_cast<std::size_t>(data.width());
   const auto row = static_cast<std::size_t>(surface_.knots(0).basis_count());
   double* to = out.net.data();
-  for (int j = 0; j < count_v; ++j) {
-    std::size_t at =
-        (static_cast<std::size_t>(in_v.first + j) * row + static_cast<std::size_t>(in_u.first)) *
-        width;
-    for (int i = 0; i < count_u; ++i, to += kWidth) {
+  for (int j = 0; j < out.shape.count[1]; ++j) {
+    std::size_t at = ((first[1] + static_cast<std::size_t>(j)) * row + first[0]) * width;
+    for (int i = 0; i < out.shape.count[0]; ++i, to += kWidth) {
       to[3] = 1;
       for (std::size_t c = 0; c < width; ++c) to[c] = data.coordinates()[at++];
     }
   }
-  map_along(out.shape, 0, in_u.extraction, out.net);
-  map_along(out.shape, 1, in_v.extraction, out.net);
+  map_along(out.shape, 0, extractions_[0][first[0]], out.net);
+  map_along(out.shape, 1, extractions_[1][first[1]], out.net);
   return out;
 }
 
@@ -236,6 +238,7 @@ PatchBound bound_of(const Patch& patch, const SurfaceJet& jet) {
   LIMN_EXPECT(patch.has_positive_weights());
   PatchBound out;
   out.box = patch.box;
+  out.spans = patch.spans;
   out.jet = jet;
   out.frame = tangent_frame(jet);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

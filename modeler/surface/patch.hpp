@@ -23,9 +23,11 @@ struct ParameterBox {
 ///
 ///     name   symbol  note
 ///     box            the part's parameters
+///     spans          of KnotVector::find_span(), u and v
 ///     net            w x, w y, w z, w of each control point (w = 1 where polynomial), u fastest
 struct Patch {
   ParameterBox box;
+  std::array<int, 2> spans = {0, 0};
   BezierShape shape;
   std::vector<double> net;
 
@@ -36,27 +38,23 @@ struct Patch {
   Patch halve(int direction);
 };
 
-/// The Bézier patches of a surface: spans() of them a direction, by number.
+/// The Bézier patches of a surface.
 class PatchGrid {
  public:
   explicit PatchGrid(const BsplineSurface& surface);
 
-  int spans(int direction) const noexcept {
-    return static_cast<int>(spans_[static_cast<std::size_t>(direction)].size());
+  /// The spans of a direction that are not empty, ascending.
+  const std::vector<int>& spans(int direction) const noexcept {
+    return spans_[static_cast<std::size_t>(direction)];
   }
-  Patch patch(int u, int v) const;
+  /// Precondition: each is in spans().
+  Patch patch(const std::array<int, 2>& spans) const;
 
  private:
-  struct Span {
-    double low;
-    double high;
-    int first;  ///< control point
-    std::vector<double> extraction;
-  };
-  static std::vector<Span> make_spans(const KnotVector& knots);
-
   BsplineSurface surface_;
-  std::array<std::vector<Span>, 2> spans_;
+  std::array<std::vector<int>, 2> spans_;
+  /// Of span degree + i at i, empty where the span is.
+  std::array<std::vector<std::vector<double>>, 2> extractions_;
 };
 
 /// What is certain about a patch: it lies in two boxes, and its derivatives near those in its
@@ -70,6 +68,7 @@ class PatchGrid {
 /// off the tangent plane tell how the surface bends, those along it only how its parameters do.
 struct PatchBound {
   ParameterBox box;
+  std::array<int, 2> spans = {0, 0};
   SurfaceJet jet;  ///< at box.center()
 
   struct Reach {

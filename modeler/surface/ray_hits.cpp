@@ -100,32 +100,42 @@ class RaySearch {
     }
   }
 
-  /// The ray in the patch's own frame, against its box there.
-  bool misses(const PatchBound& b) const noexcept {
-    const Vector3d origin = b.frame.transpose() * (ray_.origin - b.jet.point);
-    const Vector3d direction = b.frame.transpose() * ray_.direction;
-    double first = 0;
-    double last = most_;
+  /// The ray in a patch's own frame, and the part of it inside its box there.
+  struct Passage {
+    Vector3d origin;
+    Vector3d direction;
+    Interval t;
+    bool misses() const { return t.first > t.last + 1e-14 * std::abs(t.last); }
+  };
+  Passage pass(const PatchBound& b) const noexcept {
+    Passage out{b.frame.transpose() * (ray_.origin - b.jet.point),
+                b.frame.transpose() * ray_.direction,
+                {0, most_}};
     for (Eigen::Index d = 0; d < 3; ++d) {
-      const double rounding = 1e-14 * (std::abs(origin[d]) + b.reach);
-      const double low = b.frame_low[d] - rounding;
-      const double high = b.frame_high[d] + rounding;
-      if (std::abs(direction[d]) < 1e-300) {
-        if (origin[d] < low || origin[d] > high) return true;
-        continue;
-      }
-      const double a = (low - origin[d]) / direction[d];
-      const double c = (high - origin[d]) / direction[d];
-      first = std::max(first, std::min(a, c));
-      last = std::min(last, std::max(a, c));
+      const double rounding = 1e-14 * (std::abs(out.origin[d]) + b.reach);
+      clip(out.origin[d], out.direction[d], b.frame_low[d] - rounding, b.frame_high[d] + rounding,
+           out.t);
     }
-    return first > last + 1e-14 * std::abs(last);
+    return out;
   }
 
-  void visit_leaf(const SurfaceIndex::Leaf& leaf) {
-    if (misses(leaf.bound)) return;
-    if (settle(leaf.bound)) return;
-    halve(index_.patch(leaf), leaf.bound, 0);
+  /// Keeps of `t` where low <= origin + t direction <= high.
+  static void clip(double origin, double direction, double low, double high, Interval& t) noexcept {
+    if (std::abs(direction) < 1e-300) {
+      if (origin < low || origin > high) t = {1, 0};
+      return;
+    }
+    const double a = (low - origin) / direction;
+    const double b = (high - origin) / direction;
+    t.first = std::max(t.first, std::min(a, b));
+    t.last = std::min(t.last, std::max(a, b));
+  }
+
+  void visit_leaf(const PatchBound& leaf) {
+    const Passage ray = pass(leaf);
+    if (ray.misses()) return;
+    if (settle(leaf)) return;
+    halve(index_.patch(leaf), leaf, ray, 0);
   }
 
   /// S seen along the ray, F(u, v) = (across_0, across_1) . (S - origin), which is 0 at hits.
@@ -175,7 +185,7 @@ class RaySearch {
       // Roots outside do not count: stay near.
       x = x.cwiseMax(-1.5).cwiseMin(1.5);
       const Vector2d at = center + x.cwiseProduct(half);
-      const SurfaceJet jet = index_.evaluator().jet(at.x(), at.y());
+      const SurfaceJet jet = index_.jet(b, at);
       const Vector2d f = seen(jet.point);
       const Matrix2d j = jacobian(jet) * half.asDiagonal();
       const double det = j.determinant();
@@ -193,29 +203,45 @@ class RaySearch {
         if (x.cwiseAbs().maxCoeff() > 1 + kEdge) return true;  // the root is a neighbour's
         x = x.cwiseMax(-1.0).cwiseMin(1.0);
         const Vector2d end = center + x.cwiseProduct(half);
-        add(end, index_.evaluator().jet(end.x(), end.y()).point, false);
+        add(end, index_.jet(b, end).point, 0);
         return true;
       }
     }
     return false;
   }
 
-  void add(const Vector2d& parameter, const Vector3d& point, bool tangent) {
+  void add(const Vector2d& parameter, const Vector3d& point, double run) {
     const double t = (point - ray_.origin).dot(along_) * per_length_;
     if (t < -kGeometric * per_length_ || t > most_ + kGeometric * per_length_) return;
-    found_.hits.push_back({std::max(t, 0.0), parameter, point, tangent});
+    found_.hits.push_back({std::max(t, 0.0), parameter, point, run});
     if (first_only_) most_ = std::min(most_, std::max(t, 0.0));
   }
 
-  void halve(Patch patch, const PatchBound& bound, int halvings) {
-    const double across = seen(bound.jet.point).norm();
-    if (bound.reach < 0.5 * kGeometric || halvings == kMostHalvings) {
-      if (across <= bound.reach + kGeometric) add(bound.box.center(), bound.jet.point, true);
+  /// A patch that is flat to kGeometric and still not settled: the ray runs along it, or it is a
+  /// sliver beside a pole. Met where the ray is over the parallelogram of its tangents.
+  void touch(const PatchBound& b, const Passage& ray) {
+    Interval t = ray.t;
+    if (b.least_stretch > 0) {
+      const Vector2d origin = b.flatten * ray.origin.head<2>();
+      const Vector2d direction = b.flatten * ray.direction.head<2>();
+      const double edge = 1 + kEdge + b.bending();
+      for (Eigen::Index d = 0; d < 2; ++d) clip(origin[d], direction[d], -edge, edge, t);
+      if (t.first > t.last) return;
+    }
+    const Vector2d x = b.flatten * (ray.origin + t.first * ray.direction).head<2>();
+    const Vector2d at = b.box.center() + x.cwiseMax(-1.0).cwiseMin(1.0).cwiseProduct(b.box.half());
+    const double run = (t.last - t.first) / per_length_;
+    add(at, index_.jet(b, at).point, run > 10 * kGeometric ? run : 0.0);
+  }
+
+  void halve(Patch patch, const PatchBound& bound, const Passage& ray, int halvings) {
+    if (bound.frame_high.z() - bound.frame_low.z() <= kGeometric || halvings == kMostHalvings) {
+      touch(bound, ray);
       return;
     }
     if (cells_ >= kMostCells) {
       found_.complete = false;
-      if (across <= bound.reach) add(bound.box.center(), bound.jet.point, true);
+      touch(bound, ray);
       return;
     }
     Patch after = patch.halve(wider_direction(bound));
@@ -223,35 +249,43 @@ class RaySearch {
     std::array<Patch*, 2> patches = {&patch, &after};
     std::array<double, 2> distance{};
     for (std::size_t i = 0; i < 2; ++i) {
-      const Vector2d center = patches[i]->box.center();
-      bounds[i] = bound_of(*patches[i], index_.evaluator().jet(center.x(), center.y()));
+      bounds[i] = index_.bound(*patches[i]);
       distance[i] = (bounds[i].jet.point - ray_.origin).dot(along_);
     }
     const std::size_t near = distance[1] < distance[0] ? 1 : 0;
     for (const std::size_t i : {near, 1 - near}) {
       ++cells_;
-      if (misses(bounds[i]) || settle(bounds[i])) continue;
-      halve(std::move(*patches[i]), bounds[i], halvings + 1);
+      const Passage through = pass(bounds[i]);
+      if (through.misses() || settle(bounds[i])) continue;
+      halve(std::move(*patches[i]), bounds[i], through, halvings + 1);
     }
   }
 
-  /// Ascending, one for each place: patches that share an edge both find what lies on it.
+  /// Ascending, one for each place: patches that share an edge both find what lies on it, and runs
+  /// go on from patch to patch.
   void finish() {
     auto& hits = found_.hits;
     std::sort(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
       if (a.t != b.t) return a.t < b.t;
-      if (a.tangent != b.tangent) return b.tangent;
+      if (a.run != b.run) return a.run < b.run;
       return std::pair(a.parameter.x(), a.parameter.y()) <
              std::pair(b.parameter.x(), b.parameter.y());
     });
     std::vector<RayHit> kept;
     for (const RayHit& hit : hits) {
-      const bool known = std::any_of(kept.begin(), kept.end(), [&hit](const RayHit& k) {
-        // Tangent places are found in cells about as large as kGeometric, some beside each other.
-        const double near = hit.tangent || k.tangent ? 1e3 * kGeometric : 10 * kGeometric;
-        return (k.point - hit.point).norm() < near;
-      });
-      if (!known) kept.push_back(hit);
+      constexpr double kNear = 10 * kGeometric;
+      RayHit* known = nullptr;
+      for (RayHit& k : kept) {
+        const double beyond = (hit.t - k.t) / per_length_ - k.run;  // of the end of its run
+        const bool same_place = (k.point - hit.point).norm() < kNear;
+        // Ends of runs are known to a part of their length only.
+        if (same_place || (k.run > 0 && beyond < 0.5 * (k.run + hit.run) + kNear)) known = &k;
+      }
+      if (known == nullptr) {
+        kept.push_back(hit);
+      } else {
+        known->run = std::max(known->run, (hit.t - known->t) / per_length_ + hit.run);
+      }
     }
     hits = std::move(kept);
   }

@@ -19,16 +19,22 @@ constexpr int kMostHalvingsForWeights = 80;
 }  // namespace
 
 int wider_direction(const PatchBound& bound) noexcept {
+  // How much the tangents turn along each direction, each against its own length: with S_uv one
+  // tangent turns where the other parameter moves.
   const Eigen::Vector2d half = bound.box.half();
-  return (bound.along.du + bound.off.du) * half.x() >= (bound.along.dv + bound.off.dv) * half.y()
-             ? 0
-             : 1;
+  const double least = 1e-12 * bound.reach;  // where a tangent vanishes
+  const double per_u = 1 / std::max(bound.jet.du.norm(), least / half.x());
+  const double per_v = 1 / std::max(bound.jet.dv.norm(), least / half.y());
+  const double uu = bound.jet.duu.norm() + bound.along.duu + bound.off.duu;
+  const double uv = bound.jet.duv.norm() + bound.along.duv + bound.off.duv;
+  const double vv = bound.jet.dvv.norm() + bound.along.dvv + bound.off.dvv;
+  return half.x() * (uu * per_u + uv * per_v) >= half.y() * (vv * per_v + uv * per_u) ? 0 : 1;
 }
 
 SurfaceIndex::SurfaceIndex(BsplineSurface surface)
     : evaluator_(std::move(surface)), grid_(evaluator_.surface()) {
-  for (int v = 0; v < grid_.spans(1); ++v) {
-    for (int u = 0; u < grid_.spans(0); ++u) add_leaves(grid_.patch(u, v), {u, v}, 0);
+  for (const int v : grid_.spans(1)) {
+    for (const int u : grid_.spans(0)) add_leaves(grid_.patch({u, v}), 0);
   }
   if (leaves_.size() < 2) return;
   std::vector<std::int32_t> order(leaves_.size());
@@ -37,29 +43,26 @@ SurfaceIndex::SurfaceIndex(BsplineSurface surface)
   add_nodes(order, 0, order.size());
 }
 
-void SurfaceIndex::add_leaves(Patch patch, std::array<std::int32_t, 2> span, int halvings) {
-  if (!patch.has_positive_weights() && halvings < kMostHalvingsForWeights) {
-    Patch after = patch.halve(halvings % 2);
-    add_leaves(std::move(patch), span, halvings + 1);
-    add_leaves(std::move(after), span, halvings + 1);
-    return;
+void SurfaceIndex::add_leaves(Patch patch, int halvings) {
+  int direction = halvings % 2;
+  if (patch.has_positive_weights() || halvings == kMostHalvingsForWeights) {
+    PatchBound leaf = bound(patch);
+    if (leaf.bending() <= kMostBending || halvings >= kMostHalvings) {
+      leaves_.push_back(std::move(leaf));
+      return;
+    }
+    direction = wider_direction(leaf);
   }
-  const Eigen::Vector2d center = patch.box.center();
-  Leaf leaf{bound_of(patch, evaluator_.jet(center.x(), center.y())), span};
-  if (!(leaf.bound.bending() <= kMostBending) && halvings < kMostHalvings) {
-    Patch after = patch.halve(wider_direction(leaf.bound));
-    add_leaves(std::move(patch), span, halvings + 1);
-    add_leaves(std::move(after), span, halvings + 1);
-    return;
-  }
-  leaves_.push_back(std::move(leaf));
+  Patch after = patch.halve(direction);
+  add_leaves(std::move(patch), halvings + 1);
+  add_leaves(std::move(after), halvings + 1);
 }
 
 std::int32_t SurfaceIndex::add_nodes(std::vector<std::int32_t>& order, std::size_t begin,
                                      std::size_t end) {
   if (end - begin == 1) return ~order[begin];
   const auto middle_of = [this](std::int32_t i) {
-    const PatchBound& bound = leaves_[static_cast<std::size_t>(i)].bound;
+    const PatchBound& bound = leaves_[static_cast<std::size_t>(i)];
     return Vector3d(bound.low + bound.high);
   };
   Vector3d low = middle_of(order[begin]);
@@ -87,7 +90,7 @@ std::int32_t SurfaceIndex::add_nodes(std::vector<std::int32_t>& order, std::size
     Node& node = nodes_[number];
     node.child[side] = child;
     if (child < 0) {
-      const PatchBound& bound = leaves_[static_cast<std::size_t>(~child)].bound;
+      const PatchBound& bound = leaves_[static_cast<std::size_t>(~child)];
       node.low[side] = bound.low;
       node.high[side] = bound.high;
     } else {
@@ -99,18 +102,18 @@ std::int32_t SurfaceIndex::add_nodes(std::vector<std::int32_t>& order, std::size
   return static_cast<std::int32_t>(number);
 }
 
-Patch SurfaceIndex::patch(const Leaf& leaf) const {
-  Patch patch = grid_.patch(leaf.span[0], leaf.span[1]);
+Patch SurfaceIndex::patch(const PatchBound& leaf) const {
+  Patch patch = grid_.patch(leaf.spans);
   for (int d = 0; d < 2; ++d) {
     const auto cut_at = [&](double u) {
       const double t = (u - patch.box.low[d]) / (patch.box.high[d] - patch.box.low[d]);
-      Patch after{patch.box, patch.shape, std::vector<double>(patch.net.size())};
+      Patch after{patch.box, patch.spans, patch.shape, std::vector<double>(patch.net.size())};
       cut_bezier(patch.shape, d, t, patch.net, after.net);
       patch.box.high[d] = after.box.low[d] = u;
       return after;
     };
-    if (leaf.bound.box.high[d] < patch.box.high[d]) cut_at(leaf.bound.box.high[d]);
-    if (leaf.bound.box.low[d] > patch.box.low[d]) patch = cut_at(leaf.bound.box.low[d]);
+    if (leaf.box.high[d] < patch.box.high[d]) cut_at(leaf.box.high[d]);
+    if (leaf.box.low[d] > patch.box.low[d]) patch = cut_at(leaf.box.low[d]);
   }
   return patch;
 }

@@ -34,14 +34,14 @@ struct RayHit {
   double t = 0;
   Eigen::Vector2d parameter;
   Eigen::Vector3d point;
-  /// The ray only touches here: it passes the surface within kGeometric, and no root is certain.
-  bool tangent = false;
+  /// The ray touches the surface here, or runs along it: from `point` on it stays within kGeometric
+  /// for about this length in mm. 0 where it passes through.
+  double run = 0;
 };
 
 struct RayHits {
-  std::vector<RayHit> hits;  ///< ascending t, those within kGeometric of each other once
-  /// Whether these are all. False where the ray runs along the surface: hits then holds places of
-  /// the run, the first among them.
+  std::vector<RayHit> hits;  ///< ascending t, those within some kGeometric of each other once
+  /// Whether these are all. False where the search was cut off after a bounded number of halves.
   bool complete = true;
 };
 
@@ -68,30 +68,36 @@ class SurfaceIndex {
   std::optional<RayHit> first_hit(const Ray& ray) const;
   RayHits all_hits(const Ray& ray) const;
 
-  /// A leaf: a part of one span of each direction.
-  struct Leaf {
-    PatchBound bound;
-    std::array<std::int32_t, 2> span;  ///< of the grid
-  };
   /// Inner nodes: the boxes of two children each. A child below 0 is leaf ~child.
   struct Node {
     std::array<Eigen::Vector3d, 2> low;
     std::array<Eigen::Vector3d, 2> high;
     std::array<std::int32_t, 2> child;
   };
-  const std::vector<Leaf>& leaves() const noexcept { return leaves_; }
+  /// Parts of one span of each direction.
+  const std::vector<PatchBound>& leaves() const noexcept { return leaves_; }
   /// The root is first; empty where there is one leaf only.
   const std::vector<Node>& nodes() const noexcept { return nodes_; }
   /// The Bézier form of a leaf.
-  Patch patch(const Leaf& leaf) const;
+  Patch patch(const PatchBound& leaf) const;
+  /// The jet of the polynomial piece that a leaf, or a part of it, is of: at a knot line the limit
+  /// from the leaf's side.
+  SurfaceJet jet(const PatchBound& leaf, const Eigen::Vector2d& at) const noexcept {
+    return evaluator_.jet_in_spans(leaf.spans, at.x(), at.y());
+  }
+  /// The bound of a part of a leaf.
+  PatchBound bound(const Patch& part) const {
+    const Eigen::Vector2d center = part.box.center();
+    return bound_of(part, evaluator_.jet_in_spans(part.spans, center.x(), center.y()));
+  }
 
  private:
-  void add_leaves(Patch patch, std::array<std::int32_t, 2> span, int halvings);
+  void add_leaves(Patch patch, int halvings);
   std::int32_t add_nodes(std::vector<std::int32_t>& order, std::size_t begin, std::size_t end);
 
   SurfaceEvaluator evaluator_;
   PatchGrid grid_;
-  std::vector<Leaf> leaves_;
+  std::vector<PatchBound> leaves_;
   std::vector<Node> nodes_;
 };
 

@@ -30,6 +30,8 @@ constexpr Area kAreas[] = {
     {"footprint", "an embedded reader of pens: its file, and its memory at 1 kHz",
      limn::bench::footprint_area},
     {"fit", "curves through strokes: time and control points", limn::bench::fit_area},
+    {"kernel", "surfaces: evaluation, closest points, rays, knot insertion",
+     limn::bench::kernel_area},
 };
 
 void list_areas() {
