@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "modeler/surface/measures.hpp"
+
 namespace limn {
 namespace {
 
@@ -177,7 +179,7 @@ SketchStroke stroke_from_json(Checker& check, const Json& stroke, const std::str
   out.deviation_rms_mm = check.number(member("deviation_rms_mm"), place + "/deviation_rms_mm");
   out.tool = tool_from_json(check, stroke, place);
   out.curve = curve_from_json(check, stroke, place);
-  out.length_mm = arc_length(out.curve);
+  out.length_mm = arc_length(out.curve).value;
   for (const double u : out.corners) {
     if (u < out.curve.knots().domain_begin() || u > out.curve.knots().domain_end()) {
       check.fail({ErrorCode::kOutOfRange, place + "/corners",

@@ -64,8 +64,4 @@ struct SketchOptions {
 /// Errors: those of fit_curve(), which name the sample.
 Expected<SketchStroke> sketch_stroke(const Stroke& stroke, const SketchOptions& options);
 
-/// Arc length to about 1e-9 of itself (1e-5 of a span that has a cusp inside), by adaptive
-/// Gauss-Legendre quadrature of 8 points.
-double arc_length(const BsplineCurve<2>& curve);
-
 }  // namespace limn

@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "modeler/sketch/sketch.hpp"
+#include "modeler/surface/measures.hpp"
 
 namespace limn {
 namespace {
@@ -36,7 +37,7 @@ Expected<SketchStroke> sketch_stroke(const Stroke& stroke, const SketchOptions& 
   out.samples = stroke.points.size();
   out.t0 = stroke.points.front().time - options.time_zero;
   out.t1 = stroke.points.back().time - options.time_zero;
-  out.length_mm = arc_length(fit->curve);
+  out.length_mm = arc_length(fit->curve).value;
   out.corners = std::move(fit->corners);
   out.deviation_max_mm = fit->deviation_max;
   out.deviation_rms_mm = fit->deviation_rms;

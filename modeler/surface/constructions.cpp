@@ -208,9 +208,24 @@ Expected<BsplineSurface> make_coons(const BsplineCurve<3>& bottom, const Bspline
   return Rows{a->knots(0), a->knots(1), width, sum}.make();
 }
 
-Expected<Skin> make_skin(std::span<const BsplineCurve<3>> sections, Skinning skinning) {
+Expected<Skin> make_skin(std::span<const BsplineCurve<3>> sections, Skinning skinning,
+                         std::span<const double> wanted_parameters) {
   if (sections.size() < 2) {
     return fail(ErrorCode::kPointCount, "sections", "a skin needs two at least", "add a section");
+  }
+  if (!wanted_parameters.empty()) {
+    if (wanted_parameters.size() != sections.size()) {
+      return fail(ErrorCode::kPointCount, "parameters",
+                  std::to_string(wanted_parameters.size()) + " are given for " +
+                      std::to_string(sections.size()) + " sections",
+                  "give one a section");
+    }
+    for (std::size_t i = 1; i < wanted_parameters.size(); ++i) {
+      if (!(wanted_parameters[i] > wanted_parameters[i - 1])) {
+        return fail(ErrorCode::kOutOfRange, "parameter " + std::to_string(i),
+                    "it is not above the one before", "give ascending parameters");
+      }
+    }
   }
   // All on the knots of all: each meets the union so far, then all are brought to it.
   std::vector<SplineData> all;
@@ -234,7 +249,10 @@ Expected<Skin> make_skin(std::span<const BsplineCurve<3>> sections, Skinning ski
     rows.push_back(coordinates_of(both->first, width));
   }
   const std::size_t count = sections.size();
-  auto parameters = average_chords(rows, width);
+  auto parameters = wanted_parameters.empty()
+                        ? average_chords(rows, width)
+                        : Expected<std::vector<double>>(std::vector<double>(
+                              wanted_parameters.begin(), wanted_parameters.end()));
   if (!parameters) return tl::unexpected(std::move(parameters.error()));
   const int degree = std::min<int>(3, static_cast<int>(count) - 1);
   const bool local = skinning == Skinning::kLocal && count >= 4;

@@ -42,15 +42,18 @@ enum class Skinning {
 ///
 /// kLocal is a quasi-interpolant: each control point is the polar form, at its knots, of the cubic
 /// through the four nearest sections, so cubics are reproduced, and the end sections are.
-/// Errors: as make_compatible(); kPointCount for fewer than two sections; kNumeric where two
-/// neighbours are the same. [PT97 ch. 10.3]
 struct Skin {
   BsplineSurface surface;
   double deviation = 0;
   std::vector<double> parameters;  ///< v of each section
 };
+/// `parameters` gives the v of each section instead, where it is not empty.
+/// Errors: as make_compatible(); kPointCount for fewer than two sections, or another number of
+/// parameters; kOutOfRange for parameters that do not ascend; kNumeric where two neighbours are the
+/// same. [PT97 ch. 10.3]
 Expected<Skin> make_skin(std::span<const BsplineCurve<3>> sections,
-                         Skinning skinning = Skinning::kInterpolate);
+                         Skinning skinning = Skinning::kInterpolate,
+                         std::span<const double> parameters = {});
 
 /// Points in rows, u fastest: columns by rows of them.
 struct PointGrid {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "modeler/sketch/sketch.hpp"
+#include "modeler/surface/measures.hpp"
 
 namespace limn::test {
 
@@ -16,7 +17,7 @@ inline SketchStroke stroke_of(BsplineCurve<2> curve, std::vector<double> corners
   out.corners = std::move(corners);
   out.deviation_max_mm = 0.04;
   out.deviation_rms_mm = 0.015625;
-  out.length_mm = arc_length(curve);
+  out.length_mm = arc_length(curve).value;
   out.curve = std::move(curve);
   return out;
 }

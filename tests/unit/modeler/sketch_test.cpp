@@ -114,9 +114,9 @@ TEST(ArcLength, IsThatOfTheChordsOfAFineSubdivision) {
       before = next;
     }
     // Chords of 1e-3 mm fall short by (chord * curvature)^2 / 24 of the length.
-    EXPECT_NEAR(arc_length(curve), sum, 1e-7 * sum);
+    EXPECT_NEAR(arc_length(curve).value, sum, 1e-7 * sum);
   }
-  EXPECT_EQ(arc_length(test::dot()), 0);
+  EXPECT_EQ(arc_length(test::dot()).value, 0);
 }
 
 }  // namespace
