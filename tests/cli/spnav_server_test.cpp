@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "tests/cli/run_limn.hpp"
+#include "tests/support/spacenavd_rule.hpp"
 
 #define SPNAV_CONFIG_H_
 #include <spnav.h>
@@ -27,55 +27,22 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What a program of libspnav's is told; a button has its number in axes[0].
-struct Event {
-  char kind = ' ';  // motion, press, release
-  std::array<int, 6> axes{};
-  int period_ms = 0;
-};
-
-/// What spacenavd tells of the reports of a SpaceNavigator in a hid-recorder file: -350 to 350 is
-/// scaled to -500 to 500, its frame is x, -z, -y of the device's, and rest is told once.
-std::vector<Event> by_spacenavd(const std::string& path) {
-  std::vector<Event> events;
-  std::array<int, 6> state{};
-  unsigned buttons = 0;
-  bool moves = false;
-  double last = -1;
+/// The reports of a hid-recorder file.
+std::vector<MouseReport> reports_of(const std::string& path) {
+  std::vector<MouseReport> reports;
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
-    double time = 0;
+    MouseReport report;
     unsigned size = 0;
     int read = 0;
-    if (std::sscanf(line.c_str(), "E: %lf %u%n", &time, &size, &read) != 2) continue;
+    if (std::sscanf(line.c_str(), "E: %lf %u%n", &report.seconds, &size, &read) != 2) continue;
     std::istringstream words(line.substr(static_cast<std::size_t>(read)));
-    std::vector<int> bytes;
-    for (std::string word; words >> word;) bytes.push_back(std::stoi(word, nullptr, 16));
-    if (bytes.at(0) == 3) {
-      const auto now = static_cast<unsigned>(bytes.at(1));
-      for (int i = 0; i < 8; ++i) {
-        if (((now ^ buttons) >> i & 1) != 0) {
-          events.push_back({(now >> i & 1) != 0 ? 'p' : 'r', {i}, 0});
-        }
-      }
-      buttons = now;
-      continue;
+    for (std::string word; words >> word;) {
+      report.bytes.push_back(static_cast<std::uint8_t>(std::stoul(word, nullptr, 16)));
     }
-    const std::size_t first = bytes.at(0) == 1 ? 0 : 3;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const int count = static_cast<std::int16_t>(bytes.at(1 + 2 * i) | bytes.at(2 + 2 * i) << 8);
-      state[first + i] = (count + 350) * 1000 / 700 - 500;
-    }
-    const std::array<int, 6> axes = {state[0], -state[2], -state[1],
-                                     state[3], -state[5], -state[4]};
-    const bool rests = axes == std::array<int, 6>{};
-    if (rests && !moves) continue;
-    moves = !rests;
-    const int period = last < 0 ? 0 : static_cast<int>(std::floor((time - last) * 1e3 + 1e-6));
-    events.push_back({'m', axes, period});
-    last = time;
+    reports.push_back(std::move(report));
   }
-  return events;
+  return reports;
 }
 
 /// A running `limn spnav-server`.
@@ -146,8 +113,8 @@ class SpnavServerCommand : public testing::Test {
 };
 
 /// All that comes until the server ends.
-std::vector<Event> read_all() {
-  std::vector<Event> events;
+std::vector<SpnavTold> read_all() {
+  std::vector<SpnavTold> events;
   spnav_event event{};
   while (spnav_wait_event(&event) != 0) {
     if (event.type == SPNAV_EVENT_MOTION) {
@@ -160,6 +127,9 @@ std::vector<Event> read_all() {
   return events;
 }
 
+/// Its axes are called relative; limn has every report.
+constexpr SpacenavdView kSpaceNavigator{.relative = true, .by_event_node = false};
+
 bool within_one(const std::array<int, 6>& a, const std::array<int, 6>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (std::abs(a[i] - b[i]) > 1) return false;
@@ -171,25 +141,25 @@ TEST_F(SpnavServerCommand, GivesLibspnavWhatSpacenavdGives) {
   for (const char* motion : {"push", "twist", "orbit"}) {
     SCOPED_TRACE(motion);
     simulate(motion);
-    const std::vector<Event> expected = by_spacenavd(trace_);
+    const std::vector<SpnavTold> expected = by_spacenavd(reports_of(trace_), kSpaceNavigator);
     ASSERT_GT(expected.size(), 100U);
     Serving serving({"--replay", trace_}, socket_);
     EXPECT_THAT(serving.told, HasSubstr("listening on " + socket_));
     EXPECT_THAT(serving.told, HasSubstr("SPNAV_SOCKET=" + socket_));
     ASSERT_EQ(spnav_open(), 0);
     EXPECT_EQ(spnav_protocol(), 1);
-    const std::vector<Event> got = read_all();
+    const std::vector<SpnavTold> got = read_all();
     spnav_close();
     EXPECT_EQ(serving.end(0), 0);
 
     // Where this process slept, motions became one: with the newest deflection and all the time.
     EXPECT_GT(got.size(), expected.size() / 2);
     std::size_t next = 0;
-    for (const Event& event : got) {
+    for (const SpnavTold& event : got) {
       int period = 0;
       bool found = false;
       while (!found && next < expected.size()) {
-        const Event& one = expected[next++];
+        const SpnavTold& one = expected[next++];
         period += one.period_ms;
         found = one.kind == event.kind && within_one(one.axes, event.axes) &&
                 (event.kind != 'm' || period == event.period_ms);
@@ -206,7 +176,7 @@ TEST_F(SpnavServerCommand, TakesOptionsOf3dMice) {
   simulate("push");
   Serving serving({"--replay", trace_, "--sensitivity", "0,0,0,0,0,0", "--speed", "20"}, socket_);
   ASSERT_EQ(spnav_open(), 0);
-  for (const Event& event : read_all()) EXPECT_NE(event.kind, 'm');
+  for (const SpnavTold& event : read_all()) EXPECT_NE(event.kind, 'm');
   EXPECT_EQ(serving.end(0), 0);
 }
 
@@ -238,7 +208,7 @@ TEST_F(SpnavServerCommand, ASignalAmidAReplayTellsRestAndReleases) {
   ASSERT_GT(event.motion.x, 400);
   const int status = serving.end(SIGINT);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-  const std::vector<Event> rest = read_all();
+  const std::vector<SpnavTold> rest = read_all();
   ASSERT_GE(rest.size(), 2U);
   EXPECT_EQ(rest[rest.size() - 2].kind, 'm');
   EXPECT_EQ(rest[rest.size() - 2].axes, (std::array<int, 6>{}));
