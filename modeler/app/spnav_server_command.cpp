@@ -104,7 +104,8 @@ class StoppableReader final : public TraceReader {
   const StoppableClock& clock_;
 };
 
-/// Hands events on, and tells the server of the 3D mice among the devices.
+/// Hands events on, and tells the server of the 3D mice among the devices: of one that has gone
+/// once its motion has ended and its buttons are up, which is when the next event is asked for.
 class TellingReader final : public TraceReader {
  public:
   TellingReader(TraceReader& reader, SpnavServer& server, SpnavEvents& events, bool& any_mouse)
@@ -113,11 +114,13 @@ class TellingReader final : public TraceReader {
   TraceFormat format() const noexcept override { return reader_.format(); }
   std::string place() const override { return reader_.place(); }
   Expected<TraceEvent> next() override {
+    remove_gone();
     auto event = reader_.next();
     if (event) tell(*event);
     return event;
   }
   Expected<std::optional<TraceEvent>> next_until(Timestamp deadline) override {
+    remove_gone();
     auto event = reader_.next_until(deadline);
     if (event && *event) tell(**event);
     return event;
@@ -137,14 +140,19 @@ class TellingReader final : public TraceReader {
       events_.describe(served);
       server_.add_device(std::move(served));
     } else if (const auto* const note = std::get_if<TraceNote>(&event)) {
-      if (note->text == "gone") server_.remove_device(note->device);
+      if (note->text == "gone") gone_ = note->device;
     }
+  }
+  void remove_gone() {
+    if (gone_) server_.remove_device(*gone_);
+    gone_.reset();
   }
 
   TraceReader& reader_;
   SpnavServer& server_;
   SpnavEvents& events_;
   bool& any_mouse_;
+  std::optional<DeviceIndex> gone_;
 };
 
 /// Velocities, of full speeds of 1.
@@ -211,9 +219,9 @@ Outcome serve_devices(const SpnavServerArguments& arguments, const std::string& 
   }
   auto reader = open_live_input(live);
   if (!reader) return tl::unexpected(std::move(reader.error()));
+  const StopOnSignal stop(**reader);  // before anybody is told that it listens
   auto server = listen(socket);
   if (!server) return tl::unexpected(std::move(server.error()));
-  const StopOnSignal stop(**reader);
   return serve(**reader, true, **server, arguments);
 }
 
