@@ -2,9 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <poll.h>
-#include <signal.h>
-#include <sys/wait.h>
+#include <signal.h>  // SIGINT, SIGTERM
 #include <unistd.h>
 
 #include <array>
@@ -17,6 +15,7 @@
 #include <vector>
 
 #include "tests/cli/run_limn.hpp"
+#include "tests/cli/running_limn.hpp"
 #include "tests/support/spacenavd_rule.hpp"
 
 #define SPNAV_CONFIG_H_
@@ -45,53 +44,19 @@ std::vector<MouseReport> reports_of(const std::string& path) {
   return reports;
 }
 
-/// A running `limn spnav-server`.
-class Serving {
- public:
-  Serving(std::vector<std::string> arguments, const std::string& socket) {
-    arguments.insert(arguments.begin(), {LIMN_BINARY, "spnav-server", "--socket", socket});
-    std::vector<char*> argv;
-    for (std::string& word : arguments) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    int ends[2];
-    EXPECT_EQ(::pipe(ends), 0);
-    child_ = ::fork();
-    if (child_ == 0) {
-      ::dup2(ends[1], STDERR_FILENO);
-      ::close(ends[0]);
-      ::close(ends[1]);
-      ::execv(argv[0], argv.data());
-      ::_exit(127);
-    }
-    ::close(ends[1]);
-    err_ = ::fdopen(ends[0], "r");
-    told = line();
-  }
-  ~Serving() {
-    if (child_ > 0) end(SIGKILL);
-    std::fclose(err_);
-  }
-  Serving(const Serving&) = delete;
-  Serving& operator=(const Serving&) = delete;
+/// A running `limn spnav-server`, and the first line that it says.
+struct Serving {
+  Serving(std::vector<std::string> arguments, const std::string& socket)
+      : limn(with_socket(std::move(arguments), socket)), told(limn.line()) {}
 
-  std::string line() {
-    std::array<char, 512> text{};
-    return std::fgets(text.data(), text.size(), err_) != nullptr ? text.data() : "";
-  }
-  /// The status that it ends with, by itself or (signal > 0) by a signal.
-  int end(int signal) {
-    if (signal > 0) ::kill(child_, signal);
-    int status = 0;
-    ::waitpid(child_, &status, 0);
-    child_ = -1;
-    return status;
+  static std::vector<std::string> with_socket(std::vector<std::string> arguments,
+                                              const std::string& socket) {
+    arguments.insert(arguments.begin(), {"spnav-server", "--socket", socket});
+    return arguments;
   }
 
+  RunningLimn limn;
   std::string told;
-
- private:
-  pid_t child_ = -1;
-  std::FILE* err_ = nullptr;
 };
 
 class SpnavServerCommand : public testing::Test {
@@ -150,7 +115,7 @@ TEST_F(SpnavServerCommand, GivesLibspnavWhatSpacenavdGives) {
     EXPECT_EQ(spnav_protocol(), 1);
     const std::vector<SpnavTold> got = read_all();
     spnav_close();
-    EXPECT_EQ(serving.end(0), 0);
+    EXPECT_EQ(serving.limn.end(0), 0);
 
     // Where this process slept, motions became one: with the newest deflection and all the time.
     EXPECT_GT(got.size(), expected.size() / 2);
@@ -177,7 +142,7 @@ TEST_F(SpnavServerCommand, TakesOptionsOf3dMice) {
   Serving serving({"--replay", trace_, "--sensitivity", "0,0,0,0,0,0", "--speed", "20"}, socket_);
   ASSERT_EQ(spnav_open(), 0);
   for (const SpnavTold& event : read_all()) EXPECT_NE(event.kind, 'm');
-  EXPECT_EQ(serving.end(0), 0);
+  EXPECT_EQ(serving.limn.end(0), 0);
 }
 
 TEST_F(SpnavServerCommand, ASignalTakesTheSocketAway) {
@@ -185,8 +150,7 @@ TEST_F(SpnavServerCommand, ASignalTakesTheSocketAway) {
   for (const int signal : {SIGINT, SIGTERM}) {
     Serving serving({"--replay", trace_}, socket_);
     EXPECT_TRUE(std::filesystem::is_socket(socket_));
-    const int status = serving.end(signal);
-    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal);
+    EXPECT_EQ(serving.limn.end(signal), 128 + signal);
     EXPECT_FALSE(std::filesystem::exists(socket_));
   }
 }
@@ -206,8 +170,7 @@ TEST_F(SpnavServerCommand, ASignalAmidAReplayTellsRestAndReleases) {
     pressed |= event.type == SPNAV_EVENT_BUTTON && event.button.press != 0;
   }
   ASSERT_GT(event.motion.x, 400);
-  const int status = serving.end(SIGINT);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_EQ(serving.limn.end(SIGINT), 0);
   const std::vector<SpnavTold> rest = read_all();
   ASSERT_GE(rest.size(), 2U);
   EXPECT_EQ(rest[rest.size() - 2].kind, 'm');
@@ -221,10 +184,9 @@ TEST_F(SpnavServerCommand, ARecordingWithout3dMouseIsAnError) {
   Serving serving({"--replay", trace_, "--speed", "1000"}, socket_);
   ASSERT_EQ(spnav_open(), 0);
   EXPECT_THAT(read_all(), testing::IsEmpty());
-  EXPECT_THAT(serving.line(), HasSubstr(" samples"));
-  EXPECT_THAT(serving.line(), HasSubstr("holds no 3D mouse; give a recording of a 3D mouse"));
-  const int status = serving.end(0);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+  EXPECT_THAT(serving.limn.line(), HasSubstr(" samples"));
+  EXPECT_THAT(serving.limn.line(), HasSubstr("holds no 3D mouse; give a recording of a 3D mouse"));
+  EXPECT_EQ(serving.limn.end(0), 1);
 }
 
 TEST_F(SpnavServerCommand, AFileOfSpacenavdsIsNoMouse) {
@@ -237,9 +199,8 @@ TEST_F(SpnavServerCommand, AFileOfSpacenavdsIsNoMouse) {
     return;
   }
   EXPECT_EQ(serving.told, "limn: no device ffff:ffff is here yet; it is waited for\n");
-  EXPECT_THAT(serving.line(), HasSubstr("listening on " + socket_));
-  const int status = serving.end(SIGTERM);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_THAT(serving.limn.line(), HasSubstr("listening on " + socket_));
+  EXPECT_EQ(serving.limn.end(SIGTERM), 0);
 }
 
 TEST_F(SpnavServerCommand, LeavesAnotherServersSocketAlone) {
@@ -251,6 +212,57 @@ TEST_F(SpnavServerCommand, LeavesAnotherServersSocketAlone) {
                             ": another server (spacenavd?) answers there; stop it, or name another "
                             "place by --socket PATH\n");
   EXPECT_EQ(spnav_open(), 0);
+}
+
+/// limn's words as somebody's who may not write to /run, and the folder a place where he may.
+class NotRoot {
+ public:
+  explicit NotRoot(const std::filesystem::path& folder) {
+    if (::access("/run", W_OK) != 0) return;
+    std::filesystem::permissions(folder, std::filesystem::perms::all);
+    before_ = "setpriv --reuid=65534 --regid=65534 --clear-groups ";
+  }
+  /// "" or what he is kept from.
+  std::string trouble() const {
+    const CommandRun run = run_shell(before_ + "test -x \"$0\" && ! " + before_ + "test -w /run");
+    return run.exit_code == 0 ? "" : "nobody else can run limn here: " + run.err;
+  }
+  std::string limn(const std::string& words) const {
+    return before_ + "\"$0\" spnav-server " + words;
+  }
+
+ private:
+  std::string before_;
+};
+
+TEST_F(SpnavServerCommand, ListensInTheUsersRuntimeFolderWhereRunIsNotTheirs) {
+  const NotRoot user(folder_.path());
+  if (const std::string trouble = user.trouble(); !trouble.empty()) GTEST_SKIP() << trouble;
+  simulate("push");
+  RunningProgram limn({"/bin/sh", "-c",
+                       "XDG_RUNTIME_DIR='" + folder_.path().string() + "' exec " +
+                           user.limn("--replay '" + trace_ + "'"),
+                       LIMN_BINARY});
+  EXPECT_EQ(limn.line(), "listening on " + socket_ + ", for programs started with SPNAV_SOCKET=" +
+                             socket_ + "; Ctrl-C ends it\n");
+  namespace fs = std::filesystem;
+  EXPECT_EQ(fs::status(socket_).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(limn.end(SIGTERM), 128 + SIGTERM);
+  EXPECT_FALSE(fs::exists(socket_));
+}
+
+TEST_F(SpnavServerCommand, AsksForASocketWhereThereIsNoPlaceForOne) {
+  const NotRoot user(folder_.path());
+  if (const std::string trouble = user.trouble(); !trouble.empty()) GTEST_SKIP() << trouble;
+  simulate("push");
+  for (const char* folder : {"unset XDG_RUNTIME_DIR", "export XDG_RUNTIME_DIR=relative"}) {
+    const CommandRun run =
+        run_shell(std::string(folder) + "; " + user.limn("--replay '" + trace_ + "'"));
+    EXPECT_EQ(run.exit_code, 1) << folder;
+    EXPECT_EQ(run.err,
+              "limn: /run may not be written and XDG_RUNTIME_DIR is not set; say where to listen: "
+              "--socket PATH\n");
+  }
 }
 
 TEST_F(SpnavServerCommand, SaysWhatIsWrong) {

@@ -307,6 +307,19 @@ TEST_F(KernelOracles, SpacenavdAndLimnServeASpaceNavigatorAlike) {
   expect_served_alike("spacenavigator", true);
 }
 
+TEST_F(KernelOracles, ProgramsFindLimnsServerWhereSpacenavdWouldBe) {
+  if (!std::filesystem::exists("spnav_reader")) GTEST_SKIP() << "this build has no spnav_reader";
+  RunningProgram limn({"./limn", "spnav-server"});
+  EXPECT_NE(limn.line_with("listening on /run/spnav.sock, where programs look"), "");
+  const auto permissions = std::filesystem::status("/run/spnav.sock").permissions();
+  EXPECT_EQ(static_cast<unsigned>(permissions), 0666U);
+  RunningProgram reader({"./spnav_reader", "0"}, STDOUT_FILENO);
+  EXPECT_EQ(reader.line(), "open\n");
+  EXPECT_EQ(reader.end(0), 0);
+  EXPECT_EQ(limn.end(SIGTERM), 0);
+  EXPECT_FALSE(std::filesystem::exists("/run/spnav.sock"));
+}
+
 /// The node of one of QEMU's own devices.
 ListedDevice wait_for_qemus(Backend backend, int vendor, int product) {
   for (int tries = 0; tries < 100; ++tries) {
