@@ -82,7 +82,8 @@ const std::vector<Layer>& layers() {
       // hidapi and libspnav as other programs use them, and what the heap holds.
       {"tests/kernel",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
-       {"gtest/", "gmock/", "hidapi/", "malloc.h", "spnav.h", "posix", "linux/", "sys/"}},
+       {"gtest/", "gmock/", "dlfcn.h", "hidapi/", "malloc.h", "spnav.h", "posix", "linux/",
+        "sys/"}},
       {"tests",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
        {"gtest/", "gmock/", "benchmark/", "sanitizer/", "Eigen/", "nlohmann/", "cairo",
