@@ -5,6 +5,8 @@
 #include "drivers/devices/evdev_pen_decoder.hpp"
 #include "drivers/devices/motion_decoder.hpp"
 #include "drivers/devices/motion_spec.hpp"
+#include "drivers/hid/report_layout.hpp"
+#include "drivers/hid/usages.hpp"
 
 namespace limn {
 namespace {
@@ -42,6 +44,20 @@ bool is_3d_mouse(const TraceDevice& device) {
                             ? by_ids
                             : is_multi_axis_controller(device.report_descriptor);
   return is_mouse && (device.axes.empty() || has_six_axes(device.axes));
+}
+
+std::optional<double> relative_full_counts(const TraceDevice& device) {
+  if (!device.relative_axes.empty()) return kUsualFullCounts;
+  if (device.is_kernel_decoded() || !is_3d_mouse(device)) return std::nullopt;
+  const auto descriptor = hid::parse_descriptor(device.report_descriptor);
+  if (!descriptor) return std::nullopt;
+  for (std::uint32_t i = 0; i < descriptor->fields.size(); ++i) {
+    const hid::Field& field = descriptor->fields[i];
+    if (field.kind != hid::ReportKind::kInput || !field.flags.relative()) continue;
+    if (hid::locate_in_field(*descriptor, i, hid::usage::kX).empty()) continue;
+    return full_counts(field.logical.minimum, field.logical.maximum);
+  }
+  return std::nullopt;
 }
 
 DeviceTraits traits_of(const TraceDevice& device) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "drivers/devices/pen_decoder.hpp"
@@ -30,5 +31,10 @@ DeviceTraits traits_of(const TraceDevice& device);
 
 /// Whether that kind is k3dMouse.
 bool is_3d_mouse(const TraceDevice& device);
+
+/// The counts of full deflection of a 3D mouse whose axes are called relative, as 3Dconnexion's
+/// older ones do wrongly, by its event node or its descriptor; nothing where they are absolute, or
+/// neither says.
+std::optional<double> relative_full_counts(const TraceDevice& device);
 
 }  // namespace limn

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace limn {
 namespace {
@@ -38,7 +39,32 @@ constexpr std::array kProducts = {
     Product{k3Dconnexion, 0xC636, 0x210},  // SpaceMouse Module
 };
 
+// The numbers of their buttons in the order in which spacenavd 1.2 counts them (dev.c, bnhack_..):
+// keys 1 and so on, menu, fit, T, R, F, roll, ..
+constexpr std::uint8_t kProButtons[] = {13, 14, 15, 16, 1, 2, 3, 5, 6, 9, 27, 23, 24, 25, 26};
+constexpr std::uint8_t kEnterpriseButtons[] = {13, 14, 15, 16,  17,  18,  19,  20,  21, 22, 77,
+                                               78, 1,  2,  3,   5,   6,   9,   23,  24, 25, 26,
+                                               27, 36, 37, 175, 176, 103, 104, 105, 11};
+
+std::span<const std::uint8_t> buttons_of(std::int32_t type) noexcept {
+  constexpr std::int32_t kPro = 0x20A;
+  constexpr std::int32_t kProWireless = 0x20D;
+  constexpr std::int32_t kEnterprise = 0x20E;
+  if (type == kPro || type == kProWireless) return kProButtons;
+  if (type == kEnterprise) return kEnterpriseButtons;
+  return {};
+}
+
 }  // namespace
+
+std::optional<unsigned> spnav_button(std::uint16_t vendor, std::uint16_t product,
+                                     unsigned number) noexcept {
+  const auto known = buttons_of(spnav_device_type(vendor, product));
+  if (known.empty()) return number - 1;
+  const auto found = std::find(known.begin(), known.end(), number);
+  if (found == known.end()) return std::nullopt;
+  return static_cast<unsigned>(found - known.begin());
+}
 
 std::int32_t spnav_device_type(std::uint16_t vendor, std::uint16_t product) noexcept {
   const auto found = std::find_if(kProducts.begin(), kProducts.end(), [&](const Product& one) {

@@ -13,8 +13,7 @@ constexpr std::array<std::size_t, kMotionAxes> kSource = {0, 2, 1, 3, 5, 4};
 /// Ten times what the most worn device says, far below what overflows.
 constexpr double kMost = 1e6;
 
-std::int32_t count_of(double share) {
-  const double count = SpnavEvents::kFullDeflection * share;
+std::int32_t rounded(double count) {
   return std::isnan(count)
              ? 0
              : static_cast<std::int32_t>(std::lround(std::clamp(count, -kMost, kMost)));
@@ -22,10 +21,19 @@ std::int32_t count_of(double share) {
 
 }  // namespace
 
+void SpnavEvents::describe(const SpnavDevice& device) { devices_[device.index] = device; }
+
 void SpnavEvents::push(const MotionSample& sample, const Six& velocity) {
+  const SpnavDevice& device = devices_[sample.device];
   Mouse& mouse = mice_[sample.device];
-  mouse.velocity = velocity;
-  mouse.buttons = sample.buttons;
+  for (std::size_t i = 0; i < kMotionAxes; ++i) {
+    mouse.velocity[i] = device.full_deflection * velocity[i];
+  }
+  mouse.buttons = {};
+  sample.buttons.for_each([&](unsigned number) {
+    const auto button = spnav_button(device.vendor, device.product, number);
+    if (button) mouse.buttons.set(*button + 1, true);
+  });
   if (sample.translation_told || sample.rotation_told || sample.silence) tell_motion(sample.time);
   tell_buttons();
 }
@@ -41,7 +49,7 @@ void SpnavEvents::tell_motion(Timestamp time) {
   for (std::size_t i = 0; i < kMotionAxes; ++i) {
     double sum = 0;
     for (const auto& [index, mouse] : mice_) sum += mouse.velocity[kSource[i]];
-    motion.axes[i] = count_of(sum);
+    motion.axes[i] = rounded(sum);
   }
   const bool moves = !motion.is_rest();
   if (!moves && !moves_) return;

@@ -4,7 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
+
+#include "drivers/transport/sysfs.hpp"
 
 namespace limn {
 namespace {
@@ -44,6 +47,24 @@ ListedDevice listed_from(const hid_device_info& info) {
   return listed;
 }
 
+struct Ids {
+  unsigned short vendor = 0;
+  unsigned short product = 0;
+};
+
+/// Of a node; zeros, which stand for any, where sysfs does not say.
+Ids ids_of(const std::string& node) {
+  Ids ids;
+  const auto found = SysfsDevice::find("", "/class/hidraw", node.substr(node.rfind('/') + 1));
+  const auto hid = found ? found->above("hid") : std::nullopt;
+  unsigned vendor = 0;
+  unsigned product = 0;
+  if (hid && std::sscanf(hid->property("HID_ID").c_str(), "%*x:%x:%x", &vendor, &product) == 2) {
+    ids = {static_cast<unsigned short>(vendor), static_cast<unsigned short>(product)};
+  }
+  return ids;
+}
+
 /// Orders /dev/hidraw9 before /dev/hidraw10.
 bool by_number(const ListedDevice& a, const ListedDevice& b) {
   return std::pair(a.node.size(), a.node) < std::pair(b.node.size(), b.node);
@@ -51,10 +72,13 @@ bool by_number(const ListedDevice& a, const ListedDevice& b) {
 
 }  // namespace
 
-Expected<std::vector<ListedDevice>> list_hid_devices() {
+Expected<std::vector<ListedDevice>> list_hid_devices(const std::string& node) {
   std::vector<ListedDevice> out;
-  hid_device_info* const first = hid_enumerate(0, 0);  // nothing where there are none
+  const Ids ids = node.empty() ? Ids() : ids_of(node);
+  // Nothing where there are none.
+  hid_device_info* const first = hid_enumerate(ids.vendor, ids.product);
   for (const hid_device_info* info = first; info != nullptr; info = info->next) {
+    if (!node.empty() && node != info->path) continue;
     // One entry a collection of the descriptor; the node is what counts.
     const bool known = std::any_of(out.begin(), out.end(), [info](const ListedDevice& listed) {
       return listed.node == info->path;

@@ -53,9 +53,10 @@ struct ListedDevice {
   std::string same_as;
 };
 
-/// The HID devices of the system on hidraw, by node. Reads sysfs and opens none of them.
+/// The HID devices of the system on hidraw, by node; with a node that one alone, for less. Reads
+/// sysfs and opens none of them.
 /// Error: kIo where the system cannot be asked; kMissing in a build without hidapi.
-Expected<std::vector<ListedDevice>> list_hid_devices();
+Expected<std::vector<ListedDevice>> list_hid_devices(const std::string& node = {});
 
 /// All that the system has: hidraw, then event nodes, USB devices with a HID interface that no
 /// driver has, and spacenavd's socket where it runs; `same_as` filled in. Error: as above, and only

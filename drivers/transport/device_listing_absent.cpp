@@ -14,7 +14,7 @@ tl::unexpected<Error> absent() {
 
 }  // namespace
 
-Expected<std::vector<ListedDevice>> list_hid_devices() { return absent(); }
+Expected<std::vector<ListedDevice>> list_hid_devices(const std::string&) { return absent(); }
 
 Expected<std::shared_ptr<DeviceNews>> listen_for_devices() { return absent(); }
 

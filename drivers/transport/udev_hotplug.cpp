@@ -9,6 +9,7 @@
 #include <charconv>
 #include <iterator>
 #include <mutex>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <thread>
@@ -135,7 +136,10 @@ class UdevHotplug final : public Hotplug {
   }
 
   void take(udev_device* event, Backend backend) {
-    const auto devices = list_devices_of(backend);
+    const std::string node(text_of(udev_device_get_devnode(event)));
+    if (backend == Backend::kHidraw && node.empty()) return;  // the event is no node's
+    const auto devices =
+        backend == Backend::kHidraw ? list_hid_devices(node) : list_devices_of(backend);
     if (!devices) return;
     for (const ListedDevice& listed : *devices) {
       if (!is_about(event, listed) || !watch_.wanted(listed)) continue;

@@ -25,6 +25,9 @@ class KnobFunction : public UsbFunction {
   void reset() noexcept final;
   std::size_t next_report(std::uint8_t interface, std::chrono::microseconds now,
                           std::span<std::uint8_t> report) noexcept final;
+  std::chrono::microseconds silent_until(std::chrono::microseconds now) const noexcept final {
+    return clock_.due(now);
+  }
   bool set_report(std::uint8_t interface, ReportKind kind, std::uint8_t id,
                   std::span<const std::uint8_t> bytes) noexcept final;
 

@@ -22,6 +22,9 @@ class PenFunction : public UsbFunction {
   void reset() noexcept final;
   std::size_t next_report(std::uint8_t interface, std::chrono::microseconds now,
                           std::span<std::uint8_t> report) noexcept final;
+  std::chrono::microseconds silent_until(std::chrono::microseconds now) const noexcept final {
+    return clock_.due(now);
+  }
 
  protected:
   /// `sensor` must outlive this.

@@ -29,6 +29,11 @@ class ReportClock {
     return time;
   }
 
+  /// When the next measurement is due, which may be now.
+  constexpr std::chrono::microseconds due(std::chrono::microseconds now) const noexcept {
+    return next_ && *next_ > now ? *next_ : now;
+  }
+
  private:
   std::chrono::microseconds period_;
   std::optional<std::chrono::microseconds> next_;

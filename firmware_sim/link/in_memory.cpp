@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "firmware_sim/link/frames.hpp"
 #include "firmware_sim/link/standard_requests.hpp"
 
 namespace limn::firmware {
@@ -10,7 +11,6 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr microseconds kFrame{1000};          // of full speed
 constexpr microseconds kTryPeriod{100'000};   // Linux, too, waits before it tries a device again
 constexpr int kMostAtOnce = 4096;             // of a device that never has nothing to say
 constexpr std::size_t kMostTransfer = 65535;  // wLength has 16 bits
@@ -56,7 +56,7 @@ microseconds InMemoryHost::next_look() const noexcept {
 }
 
 std::optional<HostEvent> InMemoryHost::look_at_cable() {
-  next_cable_ = time_ + kFrame;
+  next_cable_ = skip_silence(time_ + kFrame);
   const bool was_there = std::exchange(there_, device_.plugged(time_));
   if (!there_) {
     if (!std::exchange(configured_, false)) return std::nullopt;
@@ -112,6 +112,7 @@ std::optional<HostEvent> InMemoryHost::poll(Endpoint& endpoint) {
     endpoint.next_poll += endpoint.interval;
     endpoint.at_once = 0;
   }
+  if (got.status == TransferStatus::kNak) endpoint.next_poll = skip_silence(endpoint.next_poll);
   if (got.status == TransferStatus::kStall) control(clear_halt(endpoint.address), {});
   // An empty packet is no report to any host.
   if (got.status != TransferStatus::kDone || got.bytes == 0) return std::nullopt;
@@ -121,7 +122,24 @@ std::optional<HostEvent> InMemoryHost::poll(Endpoint& endpoint) {
 
 TransferResult InMemoryHost::control(const SetupPacket& setup,
                                      std::span<std::uint8_t> data) noexcept {
+  end_silence();
   return device_.control(setup, time_, data);
+}
+
+microseconds InMemoryHost::skip_silence(microseconds next) noexcept {
+  // By interval, what a transfer wakes would be polled at other times than it is on a bus.
+  if (polling_ != Polling::kWhenDue) return next;
+  return after_silence(next, time_, device_.silent_until(time_));
+}
+
+/// What is told to a device may make it speak in the next frame.
+void InMemoryHost::end_silence() noexcept {
+  if (polling_ != Polling::kWhenDue) return;
+  const auto wake = [this](microseconds& next) {
+    if (next > time_) next -= (next - time_ - microseconds(1)) / kFrame * kFrame;
+  };
+  wake(next_cable_);
+  for (Endpoint& endpoint : endpoints_) wake(endpoint.next_poll);
 }
 
 bool InMemoryHost::send_output(std::uint8_t interface, std::uint8_t id,
@@ -130,6 +148,7 @@ bool InMemoryHost::send_output(std::uint8_t interface, std::uint8_t id,
   if (interface >= interfaces.size() || bytes.size() > kMostTransfer) return false;
   for (const EndpointSpec& endpoint : interfaces[interface].endpoints) {
     if ((endpoint.address & kToHost) != 0) continue;
+    end_silence();
     return device_.interrupt_out(endpoint.address, time_, bytes).status == TransferStatus::kDone;
   }
   std::copy(bytes.begin(), bytes.end(), data_.begin());

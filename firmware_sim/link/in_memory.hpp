@@ -39,7 +39,9 @@ class InMemoryHost {
  public:
   enum class Polling : std::uint8_t {
     kByInterval,  ///< as a bus does: a report may wait as long as its endpoint's interval
-    kWhenDue  ///< every millisecond until it has no more, so that reports come when they are due
+    /// Every millisecond until it has no more, so that reports come when they are due; not while
+    /// the device says that it is silent.
+    kWhenDue
   };
 
   /// `device` must outlive this. `requests` are made whenever the device has been configured, as
@@ -81,6 +83,8 @@ class InMemoryHost {
   bool configure();
   bool read_descriptors();
   std::optional<HostEvent> poll(Endpoint& endpoint);
+  std::chrono::microseconds skip_silence(std::chrono::microseconds next) noexcept;
+  void end_silence() noexcept;
 
   BusDevice& device_;
   Polling polling_;

@@ -9,13 +9,14 @@
 #include <cstring>
 #include <utility>
 
+#include "firmware_sim/link/frames.hpp"
+
 namespace limn::firmware {
 namespace {
 
 using std::chrono::microseconds;
 using std::chrono::steady_clock;
 
-constexpr microseconds kFrame{1000};
 constexpr std::chrono::milliseconds kAcceptPause{100};
 
 LinkResult<std::uint16_t> listen_fail(std::uint16_t port, int error) {
@@ -163,7 +164,8 @@ std::optional<SimulationClock::Point> UsbipServer::deadline(microseconds now,
     if (!client->connection.session().imported()) earlier(client->deadline);
   }
   if (!clock_.runs()) return next;
-  earlier(clock_.at(std::min((now / kFrame + 1) * kFrame, end)));
+  earlier(clock_.at(std::min(
+      after_silence((now / kFrame + 1) * kFrame, now, exported_.device.silent_until(now)), end)));
   for (const auto& client : clients_) {
     const auto poll = client->connection.session().next_poll();
     if (poll) earlier(clock_.at(std::min(*poll, end)));

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "firmware_sim/link/frames.hpp"
 #include "firmware_sim/link/standard_requests.hpp"
 
 namespace limn::firmware {
@@ -16,8 +17,6 @@ using usbip::OperationStatus;
 
 constexpr std::uint32_t kNoPackets = 0xFFFFFFFF;
 constexpr std::uint32_t kMostEndpoint = 15;
-
-constexpr microseconds kFrame{1000};
 
 /// By number, those to the host behind the others.
 constexpr std::size_t place(std::uint8_t endpoint) {
@@ -171,6 +170,7 @@ LinkResult<void> UsbipSession::control(const usbip::UrbHeader& urb,
     return malformed("a client's setup packet says " + std::to_string(setup.length) +
                      " bytes, and " + std::to_string(data.size()) + " follow");
   }
+  end_silence(now);
   std::fill_n(transfer_.begin(), setup.length, std::uint8_t{0});
   if (!to_host) std::copy_n(data.begin(), setup.length, transfer_.begin());
   const TransferResult result =
@@ -237,8 +237,10 @@ bool UsbipSession::poll(const Waiting& waiting, microseconds now) {
   microseconds& next = next_polls_[place(waiting.endpoint)];
   if (result.status == TransferStatus::kNak) {
     next = (now / kFrame + 1) * kFrame;
+    if (to_host) next = after_silence(next, now, device.silent_until(now));
     return false;
   }
+  if (!to_host) end_silence(now);
   next = std::max(next, now - kMostCredit * kFrame) + kFrame;
   if (result.status != TransferStatus::kDone) {
     usbip::append_returned_submit(
@@ -252,6 +254,11 @@ bool UsbipSession::poll(const Waiting& waiting, microseconds now) {
   usbip::append_returned_submit(output_, waiting.sequence, 0, static_cast<std::uint32_t>(bytes),
                                 std::span(transfer_).first(to_host ? bytes : 0));
   return true;
+}
+
+/// What is told to a device may make it speak in the next frame.
+void UsbipSession::end_silence(microseconds now) noexcept {
+  for (microseconds& next : next_polls_) next = std::min(next, (now / kFrame + 1) * kFrame);
 }
 
 std::optional<microseconds> UsbipSession::next_poll() const noexcept {

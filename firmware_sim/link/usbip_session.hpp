@@ -98,6 +98,7 @@ class UsbipSession {
   LinkResult<void> wait(Waiting waiting);
   void unlink(const usbip::UrbHeader& urb);
   bool poll(const Waiting& waiting, std::chrono::microseconds now);
+  void end_silence(std::chrono::microseconds now) noexcept;
 
   UsbipExport& exported_;
   std::vector<std::uint8_t> input_;

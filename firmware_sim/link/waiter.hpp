@@ -9,12 +9,16 @@
 
 namespace limn::firmware {
 
-/// The simulation's time by the wall: zero until start(), then counted by CLOCK_MONOTONIC.
+/// The simulation's time by the wall: zero until start(), then counted by CLOCK_MONOTONIC from its
+/// last whole millisecond. All devices of a machine have their frames at the same moments, as those
+/// on one bus have: one timer wakes them all.
 class SimulationClock {
  public:
   using Point = std::chrono::steady_clock::time_point;
 
-  void start() noexcept { start_ = std::chrono::steady_clock::now(); }
+  void start() noexcept {
+    start_ = std::chrono::floor<std::chrono::milliseconds>(std::chrono::steady_clock::now());
+  }
   bool runs() const noexcept { return start_.has_value(); }
   std::chrono::microseconds now() const noexcept {
     if (!start_) return std::chrono::microseconds(0);

@@ -51,6 +51,13 @@ class BusDevice {
   virtual TransferResult interrupt_out(std::uint8_t endpoint, std::chrono::microseconds now,
                                        std::span<const std::uint8_t> data) noexcept = 0;
 
+  /// Where every interrupt-in endpoint has said kNak at `now`, or none is polled: until then all go
+  /// on saying it, and plugged() stays what it is, unless a transfer comes before. A link need not
+  /// look earlier. `now`: that is not known.
+  virtual std::chrono::microseconds silent_until(std::chrono::microseconds now) noexcept {
+    return now;
+  }
+
  protected:
   BusDevice() = default;
   BusDevice(const BusDevice&) = default;

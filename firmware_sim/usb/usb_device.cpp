@@ -420,6 +420,13 @@ int UsbDevice::set_idle(const SetupPacket& setup) noexcept {
   return 0;
 }
 
+std::chrono::microseconds UsbDevice::silent_until(std::chrono::microseconds now) noexcept {
+  const bool repeats = std::any_of(kept_.begin(), kept_.end(), [](const Kept& kept) {
+    return kept.used && kept.bytes > 0 && kept.idle != 0;
+  });
+  return configured() && !repeats ? function_.silent_until(now) : now;
+}
+
 TransferResult UsbDevice::interrupt_in(std::uint8_t endpoint, std::chrono::microseconds now,
                                        std::span<std::uint8_t> data) noexcept {
   const Endpoint* from = find_endpoint(endpoint);

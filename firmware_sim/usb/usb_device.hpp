@@ -54,6 +54,7 @@ class UsbDevice final : public BusDevice {
                               std::span<std::uint8_t> data) noexcept override;
   TransferResult interrupt_out(std::uint8_t endpoint, std::chrono::microseconds now,
                                std::span<const std::uint8_t> data) noexcept override;
+  std::chrono::microseconds silent_until(std::chrono::microseconds now) noexcept override;
 
   std::uint8_t address() const noexcept { return address_; }
   std::uint8_t configuration() const noexcept { return configuration_; }

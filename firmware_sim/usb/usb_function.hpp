@@ -82,6 +82,12 @@ class UsbFunction {
   virtual std::size_t next_report(std::uint8_t interface, std::chrono::microseconds now,
                                   std::span<std::uint8_t> report) noexcept = 0;
 
+  /// Where next_report() had nothing to say at `now`: until then it has not either, at any
+  /// interface, unless the host asks or tells something. `now`: that is not known.
+  virtual std::chrono::microseconds silent_until(std::chrono::microseconds now) const noexcept {
+    return now;
+  }
+
   static constexpr int kStall = -1;
 
   /// A string descriptor that the core does not make of the spec (vendors hide parameters there,

@@ -104,20 +104,23 @@ class StoppableReader final : public TraceReader {
   const StoppableClock& clock_;
 };
 
-/// Hands events on, and tells the server of the 3D mice among the devices.
+/// Hands events on, and tells the server of the 3D mice among the devices: of one that has gone
+/// once its motion has ended and its buttons are up, which is when the next event is asked for.
 class TellingReader final : public TraceReader {
  public:
-  TellingReader(TraceReader& reader, SpnavServer& server, bool& any_mouse)
-      : reader_(reader), server_(server), any_mouse_(any_mouse) {}
+  TellingReader(TraceReader& reader, SpnavServer& server, SpnavEvents& events, bool& any_mouse)
+      : reader_(reader), server_(server), events_(events), any_mouse_(any_mouse) {}
 
   TraceFormat format() const noexcept override { return reader_.format(); }
   std::string place() const override { return reader_.place(); }
   Expected<TraceEvent> next() override {
+    remove_gone();
     auto event = reader_.next();
     if (event) tell(*event);
     return event;
   }
   Expected<std::optional<TraceEvent>> next_until(Timestamp deadline) override {
+    remove_gone();
     auto event = reader_.next_until(deadline);
     if (event && *event) tell(**event);
     return event;
@@ -129,19 +132,27 @@ class TellingReader final : public TraceReader {
       const TraceDevice& device = *described->device;
       if (!is_3d_mouse(device)) return;
       any_mouse_ = true;
-      SpnavDevice served{device.index, device.name, "", device.vendor, device.product, {}};
+      SpnavDevice served{device.index, device.name, "", device.vendor, device.product, {}, {}};
+      served.full_deflection = relative_full_counts(device).value_or(kSpnavFull);
       const MotionSpec* const spec = find_motion_spec(device.vendor, device.product);
       constexpr unsigned kUsualButtons = 2;
       served.buttons = spec != nullptr && spec->buttons > 0 ? spec->buttons : kUsualButtons;
+      events_.describe(served);
       server_.add_device(std::move(served));
     } else if (const auto* const note = std::get_if<TraceNote>(&event)) {
-      if (note->text == "gone") server_.remove_device(note->device);
+      if (note->text == "gone") gone_ = note->device;
     }
+  }
+  void remove_gone() {
+    if (gone_) server_.remove_device(*gone_);
+    gone_.reset();
   }
 
   TraceReader& reader_;
   SpnavServer& server_;
+  SpnavEvents& events_;
   bool& any_mouse_;
+  std::optional<DeviceIndex> gone_;
 };
 
 /// Velocities, of full speeds of 1.
@@ -156,12 +167,12 @@ SpnavEvents::Six six_of(const Drag& drag) {
 Outcome serve(TraceReader& reader, bool salvage, SpnavServer& server,
               const SpnavServerArguments& arguments) {
   bool any_mouse = false;
-  TraceDecoder decoder(std::make_unique<TellingReader>(reader, server, any_mouse),
+  SpnavEvents events(server);
+  TraceDecoder decoder(std::make_unique<TellingReader>(reader, server, events, any_mouse),
                        {.salvage = salvage});
   DragOptions in_parts = arguments.drag;
   in_parts.mm_per_s = in_parts.rad_per_s = 1;
   DragSampler drags(in_parts);
-  SpnavEvents events(server);
   for (;;) {
     auto sample = decoder.next_any();
     if (!sample) {
@@ -208,9 +219,9 @@ Outcome serve_devices(const SpnavServerArguments& arguments, const std::string& 
   }
   auto reader = open_live_input(live);
   if (!reader) return tl::unexpected(std::move(reader.error()));
+  const StopOnSignal stop(**reader);  // before anybody is told that it listens
   auto server = listen(socket);
   if (!server) return tl::unexpected(std::move(server.error()));
-  const StopOnSignal stop(**reader);
   return serve(**reader, true, **server, arguments);
 }
 

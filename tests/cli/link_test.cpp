@@ -3,8 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
+#include <signal.h>  // SIGINT
 #include <unistd.h>
 
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "tests/cli/run_limn.hpp"
+#include "tests/cli/running_limn.hpp"
 #include "tests/cli/sample_traces.hpp"
 #include "tests/support/recordings.hpp"
 #include "tests/unit/firmware_sim/usbip_client.hpp"
@@ -27,67 +27,40 @@ using testing::HasSubstr;
 /// A running `limn` that serves a device on a free port.
 class Served {
  public:
-  explicit Served(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), LIMN_BINARY);
-    arguments.insert(arguments.end(), {"--usbip", "0"});
-    std::vector<char*> argv;
-    for (std::string& word : arguments) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    int ends[2];
-    EXPECT_EQ(::pipe(ends), 0);
-    child_ = ::fork();
-    if (child_ == 0) {
-      ::dup2(ends[1], STDERR_FILENO);
-      ::close(ends[0]);
-      ::close(ends[1]);
-      ::execv(argv[0], argv.data());
-      ::_exit(127);
-    }
-    ::close(ends[1]);
-    err_ = ::fdopen(ends[0], "r");
-    const std::string first = line();
+  explicit Served(std::vector<std::string> arguments) : limn_(on_any_port(std::move(arguments))) {
+    hear();
     unsigned port = 0;
-    const auto at = first.find("127.0.0.1:");
-    EXPECT_NE(at, std::string::npos) << first;
-    if (at != std::string::npos) std::sscanf(first.c_str() + at, "127.0.0.1:%u", &port);
+    const auto at = told_.find("127.0.0.1:");
+    EXPECT_NE(at, std::string::npos) << told_;
+    if (at != std::string::npos) std::sscanf(told_.c_str() + at, "127.0.0.1:%u", &port);
     port_ = static_cast<std::uint16_t>(port);
-    told_ = first;
   }
-  ~Served() {
-    if (child_ > 0) end(SIGKILL);
-    std::fclose(err_);
-  }
-  Served(const Served&) = delete;
-  Served& operator=(const Served&) = delete;
 
   std::uint16_t port() const { return port_; }
   const std::string& told() const { return told_; }
 
   /// Adds its next line to told(); false: it says no more.
   bool hear() {
-    const std::string next = line();
+    const std::string next = limn_.line();
     told_ += next;
     return !next.empty();
   }
 
-  /// Ends it by a signal, or waits for it (0); its exit status, 128 + n for a signal.
+  /// RunningProgram::end, and hears what there is left to hear.
   int end(int signal) {
-    if (signal != 0) ::kill(child_, signal);
-    int status = 0;
-    ::waitpid(child_, &status, 0);
-    child_ = -1;
-    for (std::string text = line(); !text.empty(); text = line()) told_ += text;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    const int status = limn_.end(signal);
+    while (hear()) {
+    }
+    return status;
   }
 
  private:
-  std::string line() {
-    char text[512] = "";
-    return std::fgets(text, sizeof text, err_) != nullptr ? text : "";
+  static std::vector<std::string> on_any_port(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--usbip", "0"});
+    return arguments;
   }
 
-  pid_t child_ = -1;
-  std::FILE* err_ = nullptr;
+  RunningLimn limn_;
   std::uint16_t port_ = 0;
   std::string told_;
 };

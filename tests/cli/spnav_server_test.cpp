@@ -2,13 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <poll.h>
-#include <signal.h>
-#include <sys/wait.h>
+#include <signal.h>  // SIGINT, SIGTERM
 #include <unistd.h>
 
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -18,6 +15,8 @@
 #include <vector>
 
 #include "tests/cli/run_limn.hpp"
+#include "tests/cli/running_limn.hpp"
+#include "tests/support/spacenavd_rule.hpp"
 
 #define SPNAV_CONFIG_H_
 #include <spnav.h>
@@ -27,104 +26,37 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What a program of libspnav's is told; a button has its number in axes[0].
-struct Event {
-  char kind = ' ';  // motion, press, release
-  std::array<int, 6> axes{};
-  int period_ms = 0;
-};
-
-/// What spacenavd tells of the reports of a SpaceNavigator in a hid-recorder file: -350 to 350 is
-/// scaled to -500 to 500, its frame is x, -z, -y of the device's, and rest is told once.
-std::vector<Event> by_spacenavd(const std::string& path) {
-  std::vector<Event> events;
-  std::array<int, 6> state{};
-  unsigned buttons = 0;
-  bool moves = false;
-  double last = -1;
+/// The reports of a hid-recorder file.
+std::vector<MouseReport> reports_of(const std::string& path) {
+  std::vector<MouseReport> reports;
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
-    double time = 0;
+    MouseReport report;
     unsigned size = 0;
     int read = 0;
-    if (std::sscanf(line.c_str(), "E: %lf %u%n", &time, &size, &read) != 2) continue;
+    if (std::sscanf(line.c_str(), "E: %lf %u%n", &report.seconds, &size, &read) != 2) continue;
     std::istringstream words(line.substr(static_cast<std::size_t>(read)));
-    std::vector<int> bytes;
-    for (std::string word; words >> word;) bytes.push_back(std::stoi(word, nullptr, 16));
-    if (bytes.at(0) == 3) {
-      const auto now = static_cast<unsigned>(bytes.at(1));
-      for (int i = 0; i < 8; ++i) {
-        if (((now ^ buttons) >> i & 1) != 0) {
-          events.push_back({(now >> i & 1) != 0 ? 'p' : 'r', {i}, 0});
-        }
-      }
-      buttons = now;
-      continue;
+    for (std::string word; words >> word;) {
+      report.bytes.push_back(static_cast<std::uint8_t>(std::stoul(word, nullptr, 16)));
     }
-    const std::size_t first = bytes.at(0) == 1 ? 0 : 3;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const int count = static_cast<std::int16_t>(bytes.at(1 + 2 * i) | bytes.at(2 + 2 * i) << 8);
-      state[first + i] = (count + 350) * 1000 / 700 - 500;
-    }
-    const std::array<int, 6> axes = {state[0], -state[2], -state[1],
-                                     state[3], -state[5], -state[4]};
-    const bool rests = axes == std::array<int, 6>{};
-    if (rests && !moves) continue;
-    moves = !rests;
-    const int period = last < 0 ? 0 : static_cast<int>(std::floor((time - last) * 1e3 + 1e-6));
-    events.push_back({'m', axes, period});
-    last = time;
+    reports.push_back(std::move(report));
   }
-  return events;
+  return reports;
 }
 
-/// A running `limn spnav-server`.
-class Serving {
- public:
-  Serving(std::vector<std::string> arguments, const std::string& socket) {
-    arguments.insert(arguments.begin(), {LIMN_BINARY, "spnav-server", "--socket", socket});
-    std::vector<char*> argv;
-    for (std::string& word : arguments) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    int ends[2];
-    EXPECT_EQ(::pipe(ends), 0);
-    child_ = ::fork();
-    if (child_ == 0) {
-      ::dup2(ends[1], STDERR_FILENO);
-      ::close(ends[0]);
-      ::close(ends[1]);
-      ::execv(argv[0], argv.data());
-      ::_exit(127);
-    }
-    ::close(ends[1]);
-    err_ = ::fdopen(ends[0], "r");
-    told = line();
-  }
-  ~Serving() {
-    if (child_ > 0) end(SIGKILL);
-    std::fclose(err_);
-  }
-  Serving(const Serving&) = delete;
-  Serving& operator=(const Serving&) = delete;
+/// A running `limn spnav-server`, and the first line that it says.
+struct Serving {
+  Serving(std::vector<std::string> arguments, const std::string& socket)
+      : limn(with_socket(std::move(arguments), socket)), told(limn.line()) {}
 
-  std::string line() {
-    std::array<char, 512> text{};
-    return std::fgets(text.data(), text.size(), err_) != nullptr ? text.data() : "";
-  }
-  /// The status that it ends with, by itself or (signal > 0) by a signal.
-  int end(int signal) {
-    if (signal > 0) ::kill(child_, signal);
-    int status = 0;
-    ::waitpid(child_, &status, 0);
-    child_ = -1;
-    return status;
+  static std::vector<std::string> with_socket(std::vector<std::string> arguments,
+                                              const std::string& socket) {
+    arguments.insert(arguments.begin(), {"spnav-server", "--socket", socket});
+    return arguments;
   }
 
+  RunningLimn limn;
   std::string told;
-
- private:
-  pid_t child_ = -1;
-  std::FILE* err_ = nullptr;
 };
 
 class SpnavServerCommand : public testing::Test {
@@ -146,8 +78,8 @@ class SpnavServerCommand : public testing::Test {
 };
 
 /// All that comes until the server ends.
-std::vector<Event> read_all() {
-  std::vector<Event> events;
+std::vector<SpnavTold> read_all() {
+  std::vector<SpnavTold> events;
   spnav_event event{};
   while (spnav_wait_event(&event) != 0) {
     if (event.type == SPNAV_EVENT_MOTION) {
@@ -160,6 +92,9 @@ std::vector<Event> read_all() {
   return events;
 }
 
+/// Its axes are called relative; limn has every report.
+constexpr SpacenavdView kSpaceNavigator{.relative = true, .by_event_node = false};
+
 bool within_one(const std::array<int, 6>& a, const std::array<int, 6>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (std::abs(a[i] - b[i]) > 1) return false;
@@ -171,25 +106,25 @@ TEST_F(SpnavServerCommand, GivesLibspnavWhatSpacenavdGives) {
   for (const char* motion : {"push", "twist", "orbit"}) {
     SCOPED_TRACE(motion);
     simulate(motion);
-    const std::vector<Event> expected = by_spacenavd(trace_);
+    const std::vector<SpnavTold> expected = by_spacenavd(reports_of(trace_), kSpaceNavigator);
     ASSERT_GT(expected.size(), 100U);
     Serving serving({"--replay", trace_}, socket_);
     EXPECT_THAT(serving.told, HasSubstr("listening on " + socket_));
     EXPECT_THAT(serving.told, HasSubstr("SPNAV_SOCKET=" + socket_));
     ASSERT_EQ(spnav_open(), 0);
     EXPECT_EQ(spnav_protocol(), 1);
-    const std::vector<Event> got = read_all();
+    const std::vector<SpnavTold> got = read_all();
     spnav_close();
-    EXPECT_EQ(serving.end(0), 0);
+    EXPECT_EQ(serving.limn.end(0), 0);
 
     // Where this process slept, motions became one: with the newest deflection and all the time.
     EXPECT_GT(got.size(), expected.size() / 2);
     std::size_t next = 0;
-    for (const Event& event : got) {
+    for (const SpnavTold& event : got) {
       int period = 0;
       bool found = false;
       while (!found && next < expected.size()) {
-        const Event& one = expected[next++];
+        const SpnavTold& one = expected[next++];
         period += one.period_ms;
         found = one.kind == event.kind && within_one(one.axes, event.axes) &&
                 (event.kind != 'm' || period == event.period_ms);
@@ -206,8 +141,8 @@ TEST_F(SpnavServerCommand, TakesOptionsOf3dMice) {
   simulate("push");
   Serving serving({"--replay", trace_, "--sensitivity", "0,0,0,0,0,0", "--speed", "20"}, socket_);
   ASSERT_EQ(spnav_open(), 0);
-  for (const Event& event : read_all()) EXPECT_NE(event.kind, 'm');
-  EXPECT_EQ(serving.end(0), 0);
+  for (const SpnavTold& event : read_all()) EXPECT_NE(event.kind, 'm');
+  EXPECT_EQ(serving.limn.end(0), 0);
 }
 
 TEST_F(SpnavServerCommand, ASignalTakesTheSocketAway) {
@@ -215,8 +150,7 @@ TEST_F(SpnavServerCommand, ASignalTakesTheSocketAway) {
   for (const int signal : {SIGINT, SIGTERM}) {
     Serving serving({"--replay", trace_}, socket_);
     EXPECT_TRUE(std::filesystem::is_socket(socket_));
-    const int status = serving.end(signal);
-    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal);
+    EXPECT_EQ(serving.limn.end(signal), 128 + signal);
     EXPECT_FALSE(std::filesystem::exists(socket_));
   }
 }
@@ -236,9 +170,8 @@ TEST_F(SpnavServerCommand, ASignalAmidAReplayTellsRestAndReleases) {
     pressed |= event.type == SPNAV_EVENT_BUTTON && event.button.press != 0;
   }
   ASSERT_GT(event.motion.x, 400);
-  const int status = serving.end(SIGINT);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-  const std::vector<Event> rest = read_all();
+  EXPECT_EQ(serving.limn.end(SIGINT), 0);
+  const std::vector<SpnavTold> rest = read_all();
   ASSERT_GE(rest.size(), 2U);
   EXPECT_EQ(rest[rest.size() - 2].kind, 'm');
   EXPECT_EQ(rest[rest.size() - 2].axes, (std::array<int, 6>{}));
@@ -251,10 +184,9 @@ TEST_F(SpnavServerCommand, ARecordingWithout3dMouseIsAnError) {
   Serving serving({"--replay", trace_, "--speed", "1000"}, socket_);
   ASSERT_EQ(spnav_open(), 0);
   EXPECT_THAT(read_all(), testing::IsEmpty());
-  EXPECT_THAT(serving.line(), HasSubstr(" samples"));
-  EXPECT_THAT(serving.line(), HasSubstr("holds no 3D mouse; give a recording of a 3D mouse"));
-  const int status = serving.end(0);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+  EXPECT_THAT(serving.limn.line(), HasSubstr(" samples"));
+  EXPECT_THAT(serving.limn.line(), HasSubstr("holds no 3D mouse; give a recording of a 3D mouse"));
+  EXPECT_EQ(serving.limn.end(0), 1);
 }
 
 TEST_F(SpnavServerCommand, AFileOfSpacenavdsIsNoMouse) {
@@ -267,9 +199,8 @@ TEST_F(SpnavServerCommand, AFileOfSpacenavdsIsNoMouse) {
     return;
   }
   EXPECT_EQ(serving.told, "limn: no device ffff:ffff is here yet; it is waited for\n");
-  EXPECT_THAT(serving.line(), HasSubstr("listening on " + socket_));
-  const int status = serving.end(SIGTERM);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_THAT(serving.limn.line(), HasSubstr("listening on " + socket_));
+  EXPECT_EQ(serving.limn.end(SIGTERM), 0);
 }
 
 TEST_F(SpnavServerCommand, LeavesAnotherServersSocketAlone) {
@@ -281,6 +212,57 @@ TEST_F(SpnavServerCommand, LeavesAnotherServersSocketAlone) {
                             ": another server (spacenavd?) answers there; stop it, or name another "
                             "place by --socket PATH\n");
   EXPECT_EQ(spnav_open(), 0);
+}
+
+/// limn's words as somebody's who may not write to /run, and the folder a place where he may.
+class NotRoot {
+ public:
+  explicit NotRoot(const std::filesystem::path& folder) {
+    if (::access("/run", W_OK) != 0) return;
+    std::filesystem::permissions(folder, std::filesystem::perms::all);
+    before_ = "setpriv --reuid=65534 --regid=65534 --clear-groups ";
+  }
+  /// "" or what he is kept from.
+  std::string trouble() const {
+    const CommandRun run = run_shell(before_ + "test -x \"$0\" && ! " + before_ + "test -w /run");
+    return run.exit_code == 0 ? "" : "nobody else can run limn here: " + run.err;
+  }
+  std::string limn(const std::string& words) const {
+    return before_ + "\"$0\" spnav-server " + words;
+  }
+
+ private:
+  std::string before_;
+};
+
+TEST_F(SpnavServerCommand, ListensInTheUsersRuntimeFolderWhereRunIsNotTheirs) {
+  const NotRoot user(folder_.path());
+  if (const std::string trouble = user.trouble(); !trouble.empty()) GTEST_SKIP() << trouble;
+  simulate("push");
+  RunningProgram limn({"/bin/sh", "-c",
+                       "XDG_RUNTIME_DIR='" + folder_.path().string() + "' exec " +
+                           user.limn("--replay '" + trace_ + "'"),
+                       LIMN_BINARY});
+  EXPECT_EQ(limn.line(), "listening on " + socket_ + ", for programs started with SPNAV_SOCKET=" +
+                             socket_ + "; Ctrl-C ends it\n");
+  namespace fs = std::filesystem;
+  EXPECT_EQ(fs::status(socket_).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(limn.end(SIGTERM), 128 + SIGTERM);
+  EXPECT_FALSE(fs::exists(socket_));
+}
+
+TEST_F(SpnavServerCommand, AsksForASocketWhereThereIsNoPlaceForOne) {
+  const NotRoot user(folder_.path());
+  if (const std::string trouble = user.trouble(); !trouble.empty()) GTEST_SKIP() << trouble;
+  simulate("push");
+  for (const char* folder : {"unset XDG_RUNTIME_DIR", "export XDG_RUNTIME_DIR=relative"}) {
+    const CommandRun run =
+        run_shell(std::string(folder) + "; " + user.limn("--replay '" + trace_ + "'"));
+    EXPECT_EQ(run.exit_code, 1) << folder;
+    EXPECT_EQ(run.err,
+              "limn: /run may not be written and XDG_RUNTIME_DIR is not set; say where to listen: "
+              "--socket PATH\n");
+  }
 }
 
 TEST_F(SpnavServerCommand, SaysWhatIsWrong) {

@@ -79,10 +79,11 @@ const std::vector<Layer>& layers() {
       // Links are host side: /dev/uhid, timers that wake by absolute time, TCP.
       {"firmware_sim/link", {"firmware_sim"}, {"linux/", "posix", "sys/", "netinet/"}},
 
-      // hidapi as other programs use it, and what the heap holds.
+      // hidapi and libspnav as other programs use them, and what the heap holds.
       {"tests/kernel",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
-       {"gtest/", "gmock/", "hidapi/", "malloc.h", "posix", "linux/", "sys/"}},
+       {"gtest/", "gmock/", "dlfcn.h", "hidapi/", "malloc.h", "spnav.h", "posix", "linux/",
+        "sys/"}},
       {"tests",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
        {"gtest/", "gmock/", "benchmark/", "sanitizer/", "Eigen/", "nlohmann/", "cairo",

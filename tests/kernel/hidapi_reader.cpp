@@ -1,31 +1,25 @@
-// hidapi_reader PATH COUNT: opens a device by hidapi's libusb backend, as other programs do, and
-// prints its next COUNT reports, a line of hexadecimal bytes each. A program of its own, as
-// hidapi's backends have the same symbols and limn has the other one.
+#include "tests/kernel/hidapi_reader.hpp"
 
 #include <hidapi/hidapi.h>
 
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 
-int main(int argc, char** argv) {
-  if (argc != 3) return 2;
-  if (hid_init() != 0) return 1;
-  hid_device* const device = hid_open_path(argv[1]);
+bool read_by_hidapi(const char* path, long count, void (*opened)(void*),
+                    void (*report)(void*, const unsigned char*, int), void* reader) {
+  hid_device* const device = hid_init() == 0 ? hid_open_path(path) : nullptr;
   if (device == nullptr) {
-    std::fprintf(stderr, "hidapi_reader: %s: %ls\n", argv[1], hid_error(nullptr));
-    return 1;
+    std::fprintf(stderr, "hidapi: %s: %ls\n", path, hid_error(nullptr));
+    return false;
   }
-  std::puts("open");
-  std::fflush(stdout);
-  std::array<unsigned char, 1024> report{};
-  for (long left = std::strtol(argv[2], nullptr, 10); left > 0; --left) {
+  opened(reader);
+  std::array<unsigned char, 1024> bytes{};
+  for (; count > 0; --count) {
     constexpr int kPatienceMs = 20000;
-    const int size = hid_read_timeout(device, report.data(), report.size(), kPatienceMs);
+    const int size = hid_read_timeout(device, bytes.data(), bytes.size(), kPatienceMs);
     if (size <= 0) break;
-    for (int i = 0; i < size; ++i) std::printf("%02x ", report[static_cast<std::size_t>(i)]);
-    std::printf("\n");
+    report(reader, bytes.data(), size);
   }
   hid_close(device);
-  return hid_exit();
+  return count == 0;
 }

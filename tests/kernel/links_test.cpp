@@ -1,15 +1,15 @@
 // Simulated devices on a stock Linux kernel: what comes by hidraw, libusb and event nodes is what
 // the same device gives to a host without a kernel.
 
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <sstream>
+#include <future>
 #include <string_view>
 #include <thread>
 
@@ -19,6 +19,7 @@
 #include "firmware_sim/link/usbip_server.hpp"
 #include "tests/kernel/device_paths.hpp"
 #include "tests/kernel/expectations.hpp"
+#include "tests/kernel/hidapi_reader.hpp"
 #include "tests/kernel/plugged_device.hpp"
 
 namespace limn::test {
@@ -34,39 +35,41 @@ class KernelLinks : public testing::Test {
   void TearDown() override { wait_until_all_are_gone(); }
 };
 
-/// What hidapi's libusb backend gives of an interface, read by a program of its own.
+constexpr const char* kHidapiReader = "./libhidapi_reader.so";
+
+/// What hidapi's libusb backend gives of an interface.
 class HidapiReader {
  public:
   HidapiReader(const ListedDevice& row, std::size_t count) : interface_(row.interface_number) {
     const std::string bus_and_ports = row.usb_folder.substr(row.usb_folder.rfind('/') + 1);
     const std::string path = bus_and_ports + ":1." + std::to_string(row.interface_number);
-    output_ = ::popen(("./hidapi_reader " + path + " " + std::to_string(count)).c_str(), "r");
-    EXPECT_EQ(line(), "open\n");
+    done_ = std::async(std::launch::async, [this, path, count] { read(path, count); });
+    opened_.get_future().wait();
   }
-  ~HidapiReader() { EXPECT_EQ(::pclose(output_), 0); }
   HidapiReader(const HidapiReader&) = delete;
 
   int interface() const { return interface_; }
   std::vector<Bytes> reports() {
-    std::vector<Bytes> reports;
-    for (std::string text = line(); !text.empty(); text = line()) {
-      std::istringstream words(text);
-      Bytes& bytes = reports.emplace_back();
-      for (std::string word; words >> word;) {
-        bytes.push_back(static_cast<std::uint8_t>(std::stoul(word, nullptr, 16)));
-      }
-    }
-    return reports;
+    done_.get();
+    return std::move(reports_);
   }
 
  private:
-  std::string line() {
-    std::array<char, 8192> text{};
-    return std::fgets(text.data(), text.size(), output_) != nullptr ? text.data() : "";
+  void read(const std::string& path, std::size_t count) {
+    static void* const library = ::dlopen(kHidapiReader, RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND);
+    const auto read_reports =
+        reinterpret_cast<decltype(&read_by_hidapi)>(::dlsym(library, "read_by_hidapi"));
+    const auto opened = [](void* self) { static_cast<HidapiReader*>(self)->opened_.set_value(); };
+    const auto report = [](void* self, const unsigned char* bytes, int size) {
+      static_cast<HidapiReader*>(self)->reports_.emplace_back(bytes, bytes + size);
+    };
+    EXPECT_TRUE(read_reports(path.c_str(), static_cast<long>(count), opened, report, this));
   }
 
   int interface_;
-  std::FILE* output_ = nullptr;
+  std::vector<Bytes> reports_;
+  std::promise<void> opened_;
+  std::future<void> done_;
 };
 
 /// As usbhid of Linux asks for a report: no more bytes than the longest of the descriptor has. (The
@@ -126,7 +129,7 @@ TEST_F(KernelLinks, NoReportOfAFastPenIsLostOnHidrawAndEvdev) {
 }
 
 TEST_F(KernelLinks, NoReportOfAFastPenIsLostByLibusb) {
-  if (!std::filesystem::exists("hidapi_reader")) GTEST_SKIP() << "this build has no hidapi_reader";
+  if (!std::filesystem::exists(kHidapiReader)) GTEST_SKIP() << "this build has no hidapi_reader";
   const Taken expected = expected_from("fast-pen", "signature", kLong, Setup::kNone);
   Held one("fast-pen", "signature");
   Held other("fast-pen", "signature");
@@ -154,13 +157,27 @@ class AllOthers {
       if (info.name == "fast-pen") continue;
       const bool pen = info.kind == firmware::SimulatedKind::kPen;
       held_.push_back(std::make_unique<Held>(info.name, pen ? "signature" : "push"));
-      plugged_.push_back(std::make_unique<PluggedDevice>(held_.back()->device, cable));
+    }
+    // Whoever has a report in seven measurements takes 7 s, and is waited for when all others have
+    // gone.
+    std::stable_partition(held_.begin(), held_.end(),
+                          [](const auto& one) { return one->name != "bluetooth-pen"; });
+    for (const auto& one : held_) {
+      plugged_.push_back(std::make_unique<PluggedDevice>(one->device, cable));
     }
   }
 
   template <class Function>
   void each(const Function& function) {
     for (const auto& held : held_) function(*held);
+  }
+  /// The same, and unplugs each afterwards.
+  template <class Function>
+  void each_for_the_last_time(const Function& function) {
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      function(*held_[i]);
+      plugged_[i].reset();
+    }
   }
   /// Of each device, in order.
   std::vector<std::vector<ListedDevice>> rows(Backend backend) const {
@@ -190,7 +207,7 @@ void expect_all_others(Cable cable, Backend backend) {
   for (Taking& one : taken) one.wait_until_open();
   others.each([](Held& held) { held.device.start(); });
   std::size_t next = 0;
-  others.each([&](const Held& held) {
+  others.each_for_the_last_time([&](const Held& held) {
     SCOPED_TRACE(held.name);
     // UHID is no USB, of which strings and endpoints could be asked.
     const Setup setup = cable == Cable::kUsbip ? Setup::kLimn : Setup::kNone;
@@ -213,7 +230,7 @@ TEST_F(KernelLinks, EveryDeviceIsReadOnHidrawOfUsbip) {
 TEST_F(KernelLinks, EveryDeviceIsReadByLibusb) { expect_all_others(Cable::kUsbip, Backend::kUsb); }
 
 TEST_F(KernelLinks, EveryDeviceIsReadByHidapisLibusb) {
-  if (!std::filesystem::exists("hidapi_reader")) GTEST_SKIP() << "this build has no hidapi_reader";
+  if (!std::filesystem::exists(kHidapiReader)) GTEST_SKIP() << "this build has no hidapi_reader";
   AllOthers others(Cable::kUsbip);
   const auto rows = others.rows(Backend::kUsb);
   others.rows(Backend::kHidraw);  // Linux's drivers are done
@@ -241,11 +258,11 @@ TEST_F(KernelLinks, EveryDeviceIsReadByHidapisLibusb) {
   });
   others.each([](Held& held) { held.device.start(); });
   std::size_t next = 0;
-  others.each([&](const Held& held) {
+  others.each_for_the_last_time([&](const Held& held) {
     SCOPED_TRACE(held.name);
     HidapiReader& reader = *readers.at(next);
     expect_reports(reader.reports(), expected.at(next), reader.interface(), kShort);
-    ++next;
+    readers.at(next++).reset();
   });
 }
 

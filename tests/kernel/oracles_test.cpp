@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <linux/input.h>
+#include <signal.h>  // SIGTERM
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -17,6 +18,7 @@
 #include <fstream>
 #include <numbers>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -26,6 +28,8 @@
 #include "tests/kernel/expectations.hpp"
 #include "tests/kernel/plugged_device.hpp"
 #include "tests/kernel/qmp.hpp"
+#include "tests/support/running_program.hpp"
+#include "tests/support/spacenavd_rule.hpp"
 
 namespace limn::test {
 namespace {
@@ -199,66 +203,121 @@ TEST_F(KernelOracles, LibinputReadsThePenAsLimnDoes) {
   }
 }
 
-/// Six axes of a 3D mouse at one time.
-using Deflections = std::array<int, 6>;
-
-/// What spacenavd makes of the SpaceMouse's reports: -350 to 350 is scaled to -500 to 500, what is
-/// hardly anything is nothing, and its frame is x, -z, -y of the device's.
-std::vector<Deflections> by_spacenavd(const Taken& reports) {
-  const auto scaled = [](int value) {
-    constexpr int kDeadZone = 2;
-    const int of_500 = (value + 350) * 1000 / 700 - 500;
-    return std::abs(of_500) < kDeadZone ? 0 : of_500;
-  };
-  std::vector<Deflections> all;
-  for (const Bytes& report : reports.reports.at(0)) {
-    if (report.at(0) != 1) continue;
-    Deflections raw{};
-    for (std::size_t i = 0; i < raw.size(); ++i) {
-      raw[i] = scaled(static_cast<std::int16_t>(report.at(1 + 2 * i) | report.at(2 + 2 * i) << 8));
-    }
-    all.push_back({raw[0], -raw[2], -raw[1], raw[3], -raw[5], -raw[4]});
+/// What a program of libspnav's is told by the server at a socket.
+class SpnavReader {
+ public:
+  explicit SpnavReader(const std::string& socket, int buttons)
+      : program_({"/bin/env", "SPNAV_SOCKET=" + socket, "./spnav_reader", std::to_string(buttons)},
+                 STDOUT_FILENO) {
+    EXPECT_EQ(program_.line(), "open\n") << socket;
   }
-  return all;
-}
 
-/// What came by libspnav, whose every event has all six.
-std::vector<Deflections> by_libspnav(const Taken& taken) {
-  std::vector<Deflections> all(taken.frames);
+  /// All of it, once the buttons have come.
+  std::vector<SpnavTold> told() {
+    std::vector<SpnavTold> all;
+    for (std::string line = program_.line(); !line.empty(); line = program_.line()) {
+      SpnavTold& one = all.emplace_back();
+      one.kind = line[0];
+      std::istringstream numbers(line.substr(line.find(' ')));
+      for (int& axis : one.axes) numbers >> axis;
+    }
+    return all;
+  }
+
+ private:
+  RunningProgram program_;
+};
+
+/// What limn's own transport has of it: its motions.
+std::vector<SpnavTold> motions_of(const Taken& taken) {
+  std::vector<SpnavTold> all;
   for (const auto& [axis, values] : taken.axes) {
-    for (std::size_t i = 0; i < std::min(all.size(), values.size()); ++i) {
-      all[i].at(static_cast<std::size_t>(axis)) = values[i];
+    all.resize(std::max(all.size(), values.size()), {'m', {}, 0});
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      all[i].axes.at(static_cast<std::size_t>(axis)) = values[i];
     }
   }
   return all;
 }
 
-TEST_F(KernelOracles, SpacenavdReadsA3dMouseAsLimnDoes) {
-  ASSERT_EQ(std::system("cd / && timeout 20 spacenavd -d >/dev/null 2>&1 &"), 0);
-  Held held("spacemouse", "push");
+bool within_one(const SpnavTold& a, const SpnavTold& b) {
+  for (std::size_t i = 0; i < a.axes.size(); ++i) {
+    if (std::abs(a.axes[i] - b.axes[i]) > 1) return false;
+  }
+  return a.kind == b.kind;
+}
+
+/// Fails unless both are the same but for one count, event by event.
+void expect_told(const std::vector<SpnavTold>& got, const std::vector<SpnavTold>& expected) {
+  const auto [differ, other] =
+      std::mismatch(got.begin(), got.end(), expected.begin(), expected.end(), within_one);
+  if (differ == got.end() && other == expected.end()) return;
+  const auto text = [](const auto& at, const auto& all) {
+    return at == all.end() ? std::string("nothing") : at->kind + testing::PrintToString(at->axes);
+  };
+  ADD_FAILURE() << "event " << differ - got.begin() << " of " << got.size() << " is "
+                << text(differ, got) << " for " << text(other, expected);
+}
+
+/// spacenavd and `limn spnav-server` side by side at one device: its event node is spacenavd's, its
+/// hidraw node limn's. Each has a program of libspnav's; limn reads spacenavd, too.
+void expect_served_alike(const char* name, bool relative) {
+  if (!std::filesystem::exists("spnav_reader")) GTEST_SKIP() << "this build has no spnav_reader";
+  constexpr int kButtons = 4;  // two are clicked at the end of a push
+  const std::string socket = "/tmp/limn.sock";
+  Held held(name, "push");
   const PluggedDevice plugged(held.device, Cable::kUsbip);
   wait_for_rows(Backend::kHidraw, held.device.spec(), Cable::kUsbip, 1);
-  std::this_thread::sleep_for(2s);  // spacenavd is told by udev, too, and says nothing of it
-  const auto row = find_spacenavd();
+  wait_for_rows(Backend::kEvdev, held.device.spec(), Cable::kUsbip, 1);
+  RunningProgram spacenavd({"/bin/sh", "-c", "cd / && exec spacenavd -d"});
+  RunningProgram limn({"./limn", "spnav-server", "--socket", socket});
+  ASSERT_NE(limn.line_with("listening on " + socket), "");
+  std::optional<ListedDevice> row;  // spacenavd has its devices before it listens
+  for (int tries = 0; tries < 100 && !row; ++tries) {
+    std::this_thread::sleep_for(100ms);
+    row = find_spacenavd();
+  }
   ASSERT_TRUE(row);
-  constexpr std::size_t kMotions = 150;
-  Taking taking({*row}, kMotions);
+  SpnavReader at_spacenavd(row->node, kButtons);
+  SpnavReader at_limn(socket, kButtons);
+
+  std::vector<MouseReport> reports;
+  const Taken all = expected_from(name, "push", 1000, Setup::kNone);
+  for (const Bytes& bytes : all.reports.at(0)) reports.push_back({0, bytes});
+  const auto by_event_node = by_spacenavd(reports, {relative, true});
+  Taking taking({*row}, by_event_node.size());
   taking.wait_until_open();
   held.device.start();
-  auto got = by_libspnav(taking.get());
-  auto expected = by_spacenavd(expected_from("spacemouse", "push", 206, Setup::kNone));
-  for (auto* list : {&got, &expected}) {
-    list->insert(list->begin(), Deflections{});  // both begin at rest, and rests are told once
-    list->erase(std::unique(list->begin(), list->end()), list->end());
-  }
-  EXPECT_GT(got.size(), 100U);
-  ASSERT_LE(got.size(), expected.size());
-  expected.resize(got.size());
-  const auto [differ, other] = std::mismatch(got.begin(), got.end(), expected.begin());
-  if (differ != got.end()) {
-    ADD_FAILURE() << "motion " << differ - got.begin() << " is " << testing::PrintToString(*differ)
-                  << " for " << testing::PrintToString(*other);
-  }
+  const auto of_spacenavd = at_spacenavd.told();
+  EXPECT_EQ(of_spacenavd, by_event_node);
+  EXPECT_GT(of_spacenavd.size(), 100U);
+  expect_told(at_limn.told(), by_spacenavd(reports, {relative, false}));
+  auto motions = of_spacenavd;
+  std::erase_if(motions, [](const SpnavTold& one) { return one.kind != 'm'; });
+  EXPECT_EQ(motions_of(taking.get()), motions);
+  EXPECT_EQ(limn.end(SIGTERM), 0);
+  spacenavd.end(SIGTERM);
+}
+
+TEST_F(KernelOracles, SpacenavdAndLimnServeACombined3dMouseAlike) {
+  expect_served_alike("spacemouse", false);
+}
+
+TEST_F(KernelOracles, SpacenavdAndLimnServeASpaceNavigatorAlike) {
+  expect_served_alike("spacenavigator", true);
+}
+
+TEST_F(KernelOracles, ProgramsFindLimnsServerWhereSpacenavdWouldBe) {
+  if (!std::filesystem::exists("spnav_reader")) GTEST_SKIP() << "this build has no spnav_reader";
+  RunningProgram limn({"./limn", "spnav-server"});
+  EXPECT_NE(limn.line_with("listening on /run/spnav.sock, where programs look"), "");
+  const auto permissions = std::filesystem::status("/run/spnav.sock").permissions();
+  EXPECT_EQ(static_cast<unsigned>(permissions), 0666U);
+  RunningProgram reader({"./spnav_reader", "0"}, STDOUT_FILENO);
+  EXPECT_EQ(reader.line(), "open\n");
+  EXPECT_EQ(reader.end(0), 0);
+  EXPECT_EQ(limn.end(SIGTERM), 0);
+  EXPECT_FALSE(std::filesystem::exists("/run/spnav.sock"));
 }
 
 /// The node of one of QEMU's own devices.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <iterator>
@@ -73,6 +74,12 @@ class CycledDevice final : public firmware::BusDevice {
                                          std::span<const std::uint8_t> data) noexcept override {
     if (!plugged(now)) return {firmware::TransferStatus::kNoDevice, 0};
     return device_.interrupt_out(endpoint, now, data);
+  }
+  microseconds silent_until(microseconds now) noexcept override {
+    const microseconds cycle = cycles_.there + cycles_.away;
+    const microseconds begun = now - now % cycle;
+    if (!plugged(now)) return begun + cycle;
+    return std::min(begun + cycles_.there, device_.silent_until(now));
   }
 
  private:

@@ -36,6 +36,11 @@ class StartedDevice final : public firmware::BusDevice {
                                          std::span<const std::uint8_t> data) noexcept override {
     return device_.interrupt_out(endpoint, since_start(now), data);
   }
+  std::chrono::microseconds silent_until(std::chrono::microseconds now) noexcept override {
+    constexpr std::chrono::milliseconds kLook{20};  // whether it has been started
+    if (!start_) return now + kLook;
+    return *start_ + device_.silent_until(now - *start_);
+  }
 
  private:
   std::chrono::microseconds since_start(std::chrono::microseconds now) noexcept {

@@ -88,5 +88,30 @@ TEST(TraitsOf, AKernelDecoded3dMouseHasSixAxes) {
   EXPECT_EQ(traits_of(mouse).kind, DeviceKind::kOther);
 }
 
+/// A 3D mouse whose input field of X has these flags.
+std::vector<std::uint8_t> mouse_of_500(std::uint32_t flags) {
+  hid::test::Items items;
+  items.usage_page(hid::page::kGenericDesktop).usage(0x08).collection(1);
+  items.logical(0, 1).usage(0x48).report_size(8).report_count(1).input(0x06);  // relative, no X
+  items.usage(0x30).logical(-500, 500).report_size(16).report_count(1).input(flags);
+  items.end_collection();
+  return {items.bytes().begin(), items.bytes().end()};
+}
+
+TEST(RelativeFullCounts, AreOfMiceThatCallTheirAxesRelative) {
+  EXPECT_EQ(relative_full_counts(device(0x046D, 0xC626, mouse_of_500(0x06))), 500);
+  EXPECT_EQ(relative_full_counts(device(0x046D, 0xC626, mouse_of_500(0x02))), std::nullopt);
+  EXPECT_EQ(relative_full_counts(device(0x046D, 0xC626)), std::nullopt) << "nothing says";
+  EXPECT_EQ(relative_full_counts(device(0x046D, 0xC626, {0xFE})), std::nullopt);
+  EXPECT_EQ(relative_full_counts(device(0x1209, 2, test::SimulatedTablet::report_descriptor())),
+            std::nullopt);
+  TraceDevice node = device(0x046D, 0xC626, mouse_of_500(0x06));
+  node.relative_axes = {0, 1, 2, 3, 4, 5};
+  EXPECT_EQ(relative_full_counts(node), 350) << "as EvdevMotionDecoder has it";
+  node.relative_axes = {};
+  for (std::uint16_t code = 0; code < 6; ++code) node.axes.push_back({code, -350, 350});
+  EXPECT_EQ(relative_full_counts(node), std::nullopt);
+}
+
 }  // namespace
 }  // namespace limn

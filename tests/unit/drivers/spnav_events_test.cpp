@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 
 namespace limn::test {
@@ -42,6 +43,54 @@ TEST(SpnavEvents, HasSpacenavdsFrameAndScale) {
   events.push(sample_at(108ms), Six{1, -1, 0.001, 0.0009, 2, 0});
   EXPECT_THAT(sink.told,
               testing::ElementsAre("50 150 100 200 300 250 @0", "500 1 -500 0 0 1000 @8"));
+}
+
+TEST(SpnavEvents, TellsADevicesOwnCountsWhereSpacenavdDoes) {
+  TextSink sink;
+  SpnavEvents events(sink);
+  SpnavDevice navigator;
+  navigator.index = 3;
+  navigator.full_deflection = 350;
+  events.describe(navigator);
+  events.push(sample_at(0ms, 3), Six{1, 0, 1.0 / 350, 0, 0, -0.5});
+  events.push(sample_at(8ms, 4), Six{0.5});
+  EXPECT_THAT(sink.told, testing::ElementsAre("350 1 0 0 -175 0 @0", "600 1 0 0 -175 0 @8"));
+}
+
+TEST(SpnavEvents, NumbersTheButtonsOfTheSpaceMouseProAsSpacenavdDoes) {
+  TextSink sink;
+  SpnavEvents events(sink);
+  SpnavDevice pro;
+  pro.vendor = 0x256F;
+  pro.product = 0xC631;
+  events.describe(pro);
+  MotionSample sample = sample_at(0ms);
+  sample.translation_told = false;
+  // Key 1, menu, lock; and one that it does not have.
+  for (const unsigned number : {13U, 1U, 27U, 4U}) {
+    sample.buttons = {};
+    sample.buttons.set(number, true);
+    events.push(sample, Six{});
+  }
+  EXPECT_THAT(sink.told, testing::ElementsAre("+0", "-0", "+4", "-4", "+10", "-10"));
+}
+
+TEST(SpnavButton, HasADifferentNumberForEveryKeyOfTheGreatMice) {
+  struct Mouse {
+    std::uint16_t product;
+    unsigned keys;
+  };
+  for (const Mouse mouse : {Mouse{0xC631, 15}, Mouse{0xC632, 15}, Mouse{0xC633, 31}}) {
+    std::set<unsigned> told;
+    for (unsigned number = 1; number <= MotionButtons::kMost; ++number) {
+      const auto button = spnav_button(0x256F, mouse.product, number);
+      EXPECT_TRUE(!button || told.insert(*button).second) << number;
+    }
+    EXPECT_EQ(told.size(), mouse.keys);
+    EXPECT_EQ(*told.rbegin(), mouse.keys - 1);
+  }
+  EXPECT_EQ(spnav_button(0x046D, 0xC626, 2), 1U);
+  EXPECT_EQ(spnav_button(0x256F, 0xC633, 176), 26U) << "the space bar";
 }
 
 TEST(SpnavEvents, TellsWhatDoesNotChangeAgainButRestOnce) {

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "firmware_sim/devices/catalogue.hpp"
 #include "firmware_sim/link/in_memory.hpp"
 #include "firmware_sim/link/standard_requests.hpp"
 #include "tests/unit/firmware_sim/counting_device.hpp"
@@ -132,6 +134,72 @@ TEST(InMemoryHost, SendsOutputByInterruptOrElseByControl) {
   EXPECT_THAT(device.function.told, ElementsAre(1, 2, 3, 3, 5, 6));
   EXPECT_FALSE(host.send_output(2, 3, report)) << "there is no such interface";
   EXPECT_FALSE(host.send_output(0, 9, Bytes{9, 1, 1})) << "the device refuses it";
+}
+
+/// A device that tells how long it is silent, or not; and how often it is looked at.
+class LookedAt final : public BusDevice {
+ public:
+  LookedAt(BusDevice& device, bool tells) : device_(device), tells_(tells) {}
+
+  const DeviceSpec& spec() const noexcept override { return device_.spec(); }
+  bool plugged(std::chrono::microseconds now) noexcept override { return device_.plugged(now); }
+  void reset() noexcept override { device_.reset(); }
+  TransferResult control(const SetupPacket& setup, std::chrono::microseconds now,
+                         std::span<std::uint8_t> data) noexcept override {
+    return device_.control(setup, now, data);
+  }
+  TransferResult interrupt_in(std::uint8_t endpoint, std::chrono::microseconds now,
+                              std::span<std::uint8_t> data) noexcept override {
+    ++looks;
+    return device_.interrupt_in(endpoint, now, data);
+  }
+  TransferResult interrupt_out(std::uint8_t endpoint, std::chrono::microseconds now,
+                               std::span<const std::uint8_t> data) noexcept override {
+    return device_.interrupt_out(endpoint, now, data);
+  }
+  std::chrono::microseconds silent_until(std::chrono::microseconds now) noexcept override {
+    return tells_ ? device_.silent_until(now) : now;
+  }
+
+  int looks = 0;
+
+ private:
+  BusDevice& device_;
+  bool tells_;
+};
+
+/// Two seconds of a device, which is told something in the middle, off a frame; reports as bytes.
+std::vector<std::string> two_seconds(std::string_view name, bool tells, int& looks) {
+  const auto made =
+      make_simulated_device(name, name.starts_with("space") ? std::string_view("push") : "star", 1);
+  LookedAt device(made->bus(), tells);
+  InMemoryHost host(device, InMemoryHost::Polling::kWhenDue);
+  std::vector<std::string> lines;
+  for (const auto end : {1000300us, 2000000us}) {
+    while (const auto event = host.next(end)) {
+      lines.push_back(
+          std::to_string(event->time.count()) + " " +
+          testing::PrintToString(std::vector<int>(event->bytes.begin(), event->bytes.end())));
+    }
+    std::uint8_t mode[] = {2, 2};  // of which the Intuos begins to speak
+    host.control(set_report(0, ReportKind::kFeature, 2, 2), mode);
+    std::uint8_t text[255];  // and the Huions
+    host.control({0x80, 6, 0x0300 | 200, 0x0409, 255}, text);
+  }
+  looks = device.looks;
+  return lines;
+}
+
+TEST(InMemoryHost, LooksAtASilentDeviceLessAndSeesTheSame) {
+  for (const SimulatedInfo& info : simulated_devices()) {
+    SCOPED_TRACE(info.name);
+    int rare = 0;
+    int often = 0;
+    const auto events = two_seconds(info.name, true, rare);
+    EXPECT_EQ(events, two_seconds(info.name, false, often));
+    EXPECT_GT(events.size(), 20U);
+    EXPECT_LE(rare, info.name == "fast-pen" ? often : often * 8 / 10);
+  }
 }
 
 }  // namespace
