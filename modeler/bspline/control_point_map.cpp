@@ -188,11 +188,46 @@ ControlPointMap::ControlPointMap(int columns, int width, std::vector<int> first,
   LIMN_EXPECT(coefficients_.size() == first_.size() * static_cast<std::size_t>(width_));
 }
 
+namespace {
+
+/// Layers of kLayer doubles, whose sums stay in registers.
+template <std::size_t kLayer>
+void map_small_layers(const ControlPointMap& map, const double* in, double* out) noexcept {
+  for (int r = 0; r < map.rows(); ++r, out += kLayer) {
+    const auto row = map.row(r);
+    const double* from = in + static_cast<std::size_t>(map.first(r)) * kLayer;
+    std::array<double, kLayer> sum{};
+    for (const double a : row) {
+      for (std::size_t i = 0; i < kLayer; ++i) sum[i] += a * from[i];
+      from += kLayer;
+    }
+    std::copy(sum.begin(), sum.end(), out);
+  }
+}
+
+/// out = the sum of four layers, which is what a cubic's rows need.
+void add_four(const double* a, std::size_t layer, const double* in, double* out) noexcept {
+  const double* b = in + layer;
+  const double* c = b + layer;
+  const double* d = c + layer;
+  for (std::size_t i = 0; i < layer; ++i) {
+    out[i] = a[0] * in[i] + a[1] * b[i] + a[2] * c[i] + a[3] * d[i];
+  }
+}
+
+}  // namespace
+
 void map_layers(const ControlPointMap& map, std::size_t layer, const double* in,
                 double* out) noexcept {
+  if (layer == 3) return map_small_layers<3>(map, in, out);
+  if (layer == 4) return map_small_layers<4>(map, in, out);
   for (int r = 0; r < map.rows(); ++r, out += layer) {
     const auto row = map.row(r);
     const double* from = in + static_cast<std::size_t>(map.first(r)) * layer;
+    if (row.size() == 4) {
+      add_four(row.data(), layer, from, out);
+      continue;
+    }
     for (std::size_t i = 0; i < layer; ++i) out[i] = row[0] * from[i];
     for (std::size_t k = 1; k < row.size(); ++k) {
       from += layer;

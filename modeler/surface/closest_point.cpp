@@ -12,7 +12,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kMostSteps = 40;      ///< of one Newton iteration
+constexpr int kMostSteps = 40;  ///< of one Newton iteration
+constexpr int kMostWalkSteps = 8;
 constexpr int kMostHalvings = 100;  ///< of a leaf
 constexpr int kMostCells = 4096;    ///< halves looked at in one query
 
@@ -98,8 +99,9 @@ class ClosestSearch {
 
   ClosestPoint run() {
     if (index_.nodes().empty()) {
-      for (const auto& leaf : index_.leaves()) visit_leaf(leaf);
+      for (std::int32_t i = 0; i < std::ssize(index_.leaves()); ++i) visit_leaf(i);
     } else {
+      walk();
       visit_nodes();
     }
     settle_later();
@@ -125,7 +127,7 @@ class ClosestSearch {
       const Waiting next = stack[--size];
       if (next.square >= best_) continue;
       if (next.node < 0) {
-        visit_leaf(index_.leaves()[static_cast<std::size_t>(~next.node)]);
+        visit_leaf(~next.node);
         continue;
       }
       const auto& node = index_.nodes()[static_cast<std::size_t>(next.node)];
@@ -137,16 +139,59 @@ class ClosestSearch {
     }
   }
 
+  /// From the leaf that seems nearest by Newton's iteration over the whole surface, wherever it
+  /// leads: proves nothing, but a good first answer spares most of the search.
+  void walk() {
+    std::int32_t at = 0;
+    while (at >= 0) {
+      const auto& node = index_.nodes()[static_cast<std::size_t>(at)];
+      const auto far = [&](std::size_t i) {
+        return square_distance(p_, node.low[i], node.high[i]) +
+               1e-3 * (node.low[i] + node.high[i] - 2 * p_).squaredNorm();
+      };
+      at = node.child[far(1) < far(0) ? 1 : 0];
+    }
+    const PatchBound& leaf = index_.leaves()[static_cast<std::size_t>(~at)];
+    const BsplineSurface& surface = index_.surface();
+    const Vector2d low(surface.knots(0).domain_begin(), surface.knots(1).domain_begin());
+    const Vector2d high(surface.knots(0).domain_end(), surface.knots(1).domain_end());
+    Vector2d place = leaf.box.center();
+    SurfaceJet jet = leaf.jet;
+    for (int step = 0; step < kMostWalkSteps; ++step) {
+      const Vector3d r = jet.point - p_;
+      const double f = r.squaredNorm();
+      if (f >= best_) return;
+      best_ = f;
+      parameter_ = place;
+      point_ = jet.point;
+      Objective here = objective(jet, r);
+      double det = here.uu * here.vv - here.uv * here.uv;
+      if (!(here.uu > 0 && det > 0)) {  // Gauss-Newton leads down where Newton does not
+        here.uu = jet.du.squaredNorm();
+        here.uv = jet.du.dot(jet.dv);
+        here.vv = jet.dv.squaredNorm();
+        det = here.uu * here.vv - here.uv * here.uv;
+        if (!(det > 0)) return;
+      }
+      const Vector2d next = place + least_step(here, det, low - place, high - place);
+      if ((next - place).cwiseAbs().cwiseQuotient(leaf.box.half()).maxCoeff() < 1e-6) return;
+      place = next;
+      jet = index_.evaluator().jet(place.x(), place.y());
+    }
+  }
+
   /// No point of the patch is nearer; squared.
   double least_square(const PatchBound& bound, const Vector3d& r) const noexcept {
     const Vector3d local = bound.frame.transpose() * -r;
     return square_distance(local, bound.frame_low, bound.frame_high);
   }
 
-  void visit_leaf(const PatchBound& leaf) {
-    const Vector3d r = leaf.jet.point - p_;
-    const double least = least_square(leaf, r);
-    if (least >= best_ || settle(leaf, r)) return;
+  void visit_leaf(std::int32_t number) {
+    const auto& box = index_.boxes()[static_cast<std::size_t>(number)];
+    const double least = square_distance(box.axes * (p_ - box.middle), box.low, box.high);
+    if (least >= best_) return;
+    const PatchBound& leaf = index_.leaves()[static_cast<std::size_t>(number)];
+    if (settle(leaf, leaf.jet.point - p_)) return;
     // Halving is dear, and what other leaves hold may spare it.
     keep_if_better(leaf);
     later_.push_back({least, &leaf});
@@ -206,7 +251,8 @@ class ClosestSearch {
         least += 2 * std::min(here.gradient[d] * (box.low[d] - at[d]),
                               here.gradient[d] * (box.high[d] - at[d]));
       }
-      if (least >= best_) return true;
+      constexpr double kRoundingOfDistance = 1e-13;  // mm: what the walk has left
+      if (least >= best_ - kRoundingOfDistance * std::sqrt(best_)) return true;
       const double det = here.uu * here.vv - here.uv * here.uv;
       if (!(here.uu > 0 && det > 0)) return false;
       const Vector2d next = at + least_step(here, det, box.low - at, box.high - at);

@@ -16,7 +16,7 @@ namespace limn {
 namespace {
 
 constexpr int kMostHalvings = 60;
-constexpr int kMostPairs = 200'000;
+constexpr int kMostPairs = 20'000;
 constexpr int kMostSteps = 20;  ///< of Newton's iteration
 
 /// A part of a curve in Bézier form: Cartesian control points times their weights, and the weights.

@@ -44,7 +44,7 @@ class RaySearch {
 
   RayHits run() {
     if (index_.nodes().empty()) {
-      for (const auto& leaf : index_.leaves()) visit_leaf(leaf);
+      for (std::int32_t i = 0; i < std::ssize(index_.leaves()); ++i) visit_leaf(i);
     } else {
       visit_nodes();
     }
@@ -87,7 +87,7 @@ class RaySearch {
       const Waiting next = stack[--size];
       if (next.first > most_) continue;
       if (next.node < 0) {
-        visit_leaf(index_.leaves()[static_cast<std::size_t>(~next.node)]);
+        visit_leaf(~next.node);
         continue;
       }
       const auto& node = index_.nodes()[static_cast<std::size_t>(next.node)];
@@ -107,16 +107,16 @@ class RaySearch {
     Interval t;
     bool misses() const { return t.first > t.last + 1e-14 * std::abs(t.last); }
   };
-  Passage pass(const PatchBound& b) const noexcept {
-    Passage out{b.frame.transpose() * (ray_.origin - b.jet.point),
-                b.frame.transpose() * ray_.direction,
-                {0, most_}};
+  Passage pass(const SurfaceIndex::LeafBox& box) const noexcept {
+    Passage out{box.axes * (ray_.origin - box.middle), box.axes * ray_.direction, {0, most_}};
     for (Eigen::Index d = 0; d < 3; ++d) {
-      const double rounding = 1e-14 * (std::abs(out.origin[d]) + b.reach);
-      clip(out.origin[d], out.direction[d], b.frame_low[d] - rounding, b.frame_high[d] + rounding,
-           out.t);
+      const double rounding = 1e-14 * (std::abs(out.origin[d]) + box.high[d] - box.low[d]);
+      clip(out.origin[d], out.direction[d], box.low[d] - rounding, box.high[d] + rounding, out.t);
     }
     return out;
+  }
+  Passage pass(const PatchBound& b) const noexcept {
+    return pass({b.jet.point, b.frame.transpose(), b.frame_low, b.frame_high});
   }
 
   /// Keeps of `t` where low <= origin + t direction <= high.
@@ -131,9 +131,10 @@ class RaySearch {
     t.last = std::min(t.last, std::max(a, b));
   }
 
-  void visit_leaf(const PatchBound& leaf) {
-    const Passage ray = pass(leaf);
+  void visit_leaf(std::int32_t number) {
+    const Passage ray = pass(index_.boxes()[static_cast<std::size_t>(number)]);
     if (ray.misses()) return;
+    const PatchBound& leaf = index_.leaves()[static_cast<std::size_t>(number)];
     if (settle(leaf)) return;
     halve(index_.patch(leaf), leaf, ray, 0);
   }

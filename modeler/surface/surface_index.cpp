@@ -12,6 +12,7 @@ using Eigen::Vector3d;
 
 /// Leaves bend less, unless they were halved as often as is worth it: near a pole nothing helps.
 constexpr double kMostBending = 0.35;
+constexpr double kMostChange = 0.3;
 constexpr int kMostHalvings = 8;
 /// Positive Bernstein weights come with halving because the denominator is positive.
 constexpr int kMostHalvingsForWeights = 80;
@@ -36,6 +37,10 @@ SurfaceIndex::SurfaceIndex(BsplineSurface surface)
   for (const int v : grid_.spans(1)) {
     for (const int u : grid_.spans(0)) add_leaves(grid_.patch({u, v}), 0);
   }
+  boxes_.reserve(leaves_.size());
+  for (const PatchBound& leaf : leaves_) {
+    boxes_.push_back({leaf.jet.point, leaf.frame.transpose(), leaf.frame_low, leaf.frame_high});
+  }
   if (leaves_.size() < 2) return;
   std::vector<std::int32_t> order(leaves_.size());
   std::iota(order.begin(), order.end(), 0);
@@ -47,7 +52,10 @@ void SurfaceIndex::add_leaves(Patch patch, int halvings) {
   int direction = halvings % 2;
   if (patch.has_positive_weights() || halvings == kMostHalvingsForWeights) {
     PatchBound leaf = bound(patch);
-    if (leaf.bending() <= kMostBending || halvings >= kMostHalvings) {
+    // Points as far away as it is wide see it convex, if second derivatives stay near the middle's.
+    const bool steady = 2 * leaf.reach * leaf.second_reach_off <=
+                        kMostChange * leaf.least_stretch * leaf.least_stretch;
+    if ((leaf.bending() <= kMostBending && steady) || halvings >= kMostHalvings) {
       leaves_.push_back(std::move(leaf));
       return;
     }
@@ -63,7 +71,8 @@ std::int32_t SurfaceIndex::add_nodes(std::vector<std::int32_t>& order, std::size
   if (end - begin == 1) return ~order[begin];
   const auto middle_of = [this](std::int32_t i) {
     const PatchBound& bound = leaves_[static_cast<std::size_t>(i)];
-    return Vector3d(bound.low + bound.high);
+    const Vector3d middle = bound.low + bound.high;  // twice; an overflow may sort anywhere
+    return middle.allFinite() ? middle : Vector3d(Vector3d::Zero());
   };
   Vector3d low = middle_of(order[begin]);
   Vector3d high = low;

@@ -74,6 +74,14 @@ class SurfaceIndex {
     std::array<Eigen::Vector3d, 2> high;
     std::array<std::int32_t, 2> child;
   };
+  /// A leaf's box along its tangent plane: what most visits of a leaf end with.
+  struct LeafBox {
+    Eigen::Vector3d middle;
+    Eigen::Matrix3d axes;  ///< rows
+    Eigen::Vector3d low;   ///< of axes (S - middle)
+    Eigen::Vector3d high;
+  };
+  const std::vector<LeafBox>& boxes() const noexcept { return boxes_; }
   /// Parts of one span of each direction.
   const std::vector<PatchBound>& leaves() const noexcept { return leaves_; }
   /// The root is first; empty where there is one leaf only.
@@ -98,6 +106,7 @@ class SurfaceIndex {
   SurfaceEvaluator evaluator_;
   PatchGrid grid_;
   std::vector<PatchBound> leaves_;
+  std::vector<LeafBox> boxes_;  ///< of each leaf
   std::vector<Node> nodes_;
 };
 

@@ -1,0 +1,128 @@
+// Knot vectors, control points and weights from bytes: what is accepted can be evaluated, refined
+// and asked without a crash or an endless search, whatever its numbers are.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "modeler/bspline/refine.hpp"
+#include "modeler/bspline/simplify.hpp"
+#include "modeler/bspline/surface_evaluator.hpp"
+#include "modeler/surface/curve_crossings.hpp"
+#include "modeler/surface/surface_index.hpp"
+#include "tests/fuzz/fuzz_input.hpp"
+#include "tests/fuzz/require.hpp"
+
+namespace {
+
+using limn::BsplineSurface;
+using limn::KnotVector;
+
+using limn::fuzz::Input;
+using limn::fuzz::require;
+
+/// Small decimals, which make valid splines often, or the bits of any double.
+double number(Input& input) {
+  if (input.byte() % 8 != 0) return (input.byte() - 128) / 16.0;
+  const auto bytes = input.take(sizeof(double));
+  double bits = 0;
+  if (bytes.size() == sizeof bits) std::memcpy(&bits, bytes.data(), sizeof bits);
+  return bits;
+}
+
+limn::Expected<KnotVector> any_knots(Input& input) {
+  const int degree = input.byte() % 6;
+  const bool sorted = input.byte() % 4 != 0;
+  const bool periodic = input.byte() % 4 == 0;
+  std::vector<double> values;
+  const int count = 2 * (degree + 1) + input.byte() % 5;
+  for (int i = 0; i < count; ++i) values.push_back(number(input));
+  if (sorted) std::sort(values.begin(), values.end());
+  if (periodic) return KnotVector::make_periodic(degree, values, number(input));
+  return sorted ? KnotVector::make_clamped(degree, values.front(), values.back(),
+                                           std::span(values).subspan(1, values.size() - 2))
+                : KnotVector::make(degree, values);
+}
+
+/// `width` doubles a control point; the last is a weight where `rational`, positive for the most
+/// part.
+std::vector<double> coordinates(Input& input, const std::vector<KnotVector>& knots,
+                                std::size_t width, bool rational) {
+  std::size_t count = width;
+  for (const KnotVector& k : knots) count *= static_cast<std::size_t>(k.basis_count());
+  std::vector<double> out(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    out[i] = number(input);
+    if (rational && i % width == width - 1 && input.byte() % 8 != 0) {
+      out[i] = std::abs(out[i]) + 0.125;
+    }
+  }
+  // Periodic directions repeat their first points.
+  std::size_t stride = width;
+  for (const KnotVector& k : knots) {
+    const auto n = static_cast<std::size_t>(k.basis_count());
+    const auto round = n - static_cast<std::size_t>(k.is_periodic() ? k.degree() : 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t layer = i / stride % n;
+      if (layer >= round) out[i] = out[i - (layer - layer % round) * stride];
+    }
+    stride *= n;
+  }
+  return out;
+}
+
+void ask(const BsplineSurface& surface, Input& input) {
+  const limn::SurfaceEvaluator evaluator(surface);
+  (void)evaluator.jet(number(input), number(input));
+  const limn::SurfaceIndex index(surface);
+  const Eigen::Vector3d p(number(input), number(input), number(input));
+  if (!p.allFinite()) return;
+  const auto closest = index.closest_point(p);
+  require(!(closest.distance < 0), "a distance is 0 or more");
+  const Eigen::Vector3d direction(number(input), number(input), number(input));
+  if (!direction.allFinite() || direction.isZero(0)) return;
+  (void)index.first_hit({p, direction});
+  const auto hits = index.all_hits({p, direction});
+  for (const auto& hit : hits.hits) require(!(hit.t < 0), "hits lie ahead");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Input input(data, size);
+  const std::uint8_t what = input.byte();
+  const auto form = what % 2 == 0 ? limn::Form::kPolynomial : limn::Form::kRational;
+  const std::size_t directions = what / 2 % 2 + 1;
+  std::vector<KnotVector> knots;
+  for (std::size_t d = 0; d < directions; ++d) {
+    auto made = any_knots(input);
+    if (!made) return 0;
+    knots.push_back(*std::move(made));
+  }
+  const int dimension = directions == 2 ? 3 : 2;
+  const auto width = static_cast<std::size_t>(dimension + (form == limn::Form::kRational ? 1 : 0));
+  auto spline = limn::SplineData::make(
+      knots, dimension, form, coordinates(input, knots, width, form == limn::Form::kRational));
+  if (!spline) return 0;
+  const double added[] = {number(input)};
+  if (auto finer = limn::insert_knots(*spline, 0, added)) {
+    require(finer->count() > spline->count(), "a knot brings a control point");
+  }
+  (void)limn::elevate_degree(*spline, 0, 1);
+  (void)limn::segment(*spline, 0, number(input), number(input));
+  (void)limn::reverse(*spline, 0);
+  (void)limn::to_bezier(*spline, 0);
+  (void)limn::reduce_degree(*spline, 0);
+  if (directions == 2) {
+    ask(BsplineSurface::of(*std::move(spline)), input);
+  } else {
+    const auto curve = limn::BsplineCurve<2>::of(*std::move(spline));
+    const Eigen::Vector2d p(number(input), number(input));
+    if (p.allFinite()) (void)limn::closest_on_curve(curve, p);
+    (void)limn::cross_curves(curve, curve);
+  }
+  return 0;
+}
