@@ -20,5 +20,6 @@ void trace_area(const RowSink& sink);
 void transport_area(const RowSink& sink);
 void footprint_area(const RowSink& sink);
 void fit_area(const RowSink& sink);
+void kernel_area(const RowSink& sink);
 
 }  // namespace limn::bench
