@@ -21,5 +21,6 @@ void transport_area(const RowSink& sink);
 void footprint_area(const RowSink& sink);
 void fit_area(const RowSink& sink);
 void kernel_area(const RowSink& sink);
+void boot_area(const RowSink& sink);
 
 }  // namespace limn::bench

@@ -19,6 +19,7 @@ struct Area {
   std::string_view name;
   std::string_view what;
   void (*run)(const limn::bench::RowSink&);
+  bool when_named = false;  ///< it takes a minute: not measured unless asked for
 };
 
 constexpr Area kAreas[] = {
@@ -32,6 +33,8 @@ constexpr Area kAreas[] = {
     {"fit", "curves through strokes: time and control points", limn::bench::fit_area},
     {"kernel", "surfaces: evaluation, closest points, rays, knot insertion",
      limn::bench::kernel_area},
+    {"boot", "the first boot of tests/kernel: wall time; only where it is named",
+     limn::bench::boot_area, true},
 };
 
 void list_areas() {
@@ -55,7 +58,8 @@ int run_area(const Area& area, bool as_json) {
 constexpr const char* kHelp =
     "usage: limn-bench [AREA...] [--format text|jsonl] [--require] [--list]\n"
     "Measures limn against its goals and against other libraries in the same run. All figures are\n"
-    "costs; ratio = peer / limn, so above 1 limn is better. Without AREA everything is measured.\n"
+    "costs; ratio = peer / limn, so above 1 limn is better. Without AREA all are measured but\n"
+    "those that say so.\n"
     "  --format  text: a table; jsonl: one object a row\n"
     "  --require exit with 1 if a row misses its goal\n"
     "  --list    name the areas and end\n"
@@ -102,8 +106,11 @@ Arguments parse(const std::vector<std::string_view>& words) {
       result.complaint = "there is no area or option '" + std::string(word) + "'; see --help";
     }
   }
-  if (result.areas.empty())
-    for (const Area& area : kAreas) result.areas.push_back(&area);
+  if (result.areas.empty()) {
+    for (const Area& area : kAreas) {
+      if (!area.when_named) result.areas.push_back(&area);
+    }
+  }
   return result;
 }
 

@@ -93,20 +93,30 @@ bool is_of(const ListedDevice& row, const firmware::DeviceSpec& spec, Cable cabl
          hangs_on(row, cable);
 }
 
-}  // namespace
-
-std::vector<PenSample> samples_of(const std::string& trace) {
-  std::vector<PenSample> samples;
+/// Those of a recording's samples that are of this kind.
+template <class Sample>
+std::vector<Sample> decoded_from(const std::string& trace) {
+  std::vector<Sample> samples;
   auto reader = open_trace(memory_bytes(trace), {});
   EXPECT_TRUE(reader) << reader.error().what;
   if (!reader) return samples;
   TraceDecoder decoder(*std::move(reader), {.salvage = true});
   for (;;) {
-    const auto sample = decoder.next();
+    const auto sample = decoder.next_any();
     EXPECT_TRUE(sample) << sample.error().what;
-    if (!sample || *sample == nullptr) return samples;
-    samples.push_back(**sample);
+    if (!sample || std::holds_alternative<std::monostate>(*sample)) return samples;
+    if (const auto* const one = std::get_if<const Sample*>(&*sample)) samples.push_back(**one);
   }
+}
+
+}  // namespace
+
+std::vector<PenSample> samples_of(const std::string& trace) {
+  return decoded_from<PenSample>(trace);
+}
+
+std::vector<MotionSample> motions_of(const std::string& trace) {
+  return decoded_from<MotionSample>(trace);
 }
 
 std::vector<std::vector<ListedDevice>> wait_for_rows(Backend backend, Cable cable,

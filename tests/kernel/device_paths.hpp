@@ -9,6 +9,7 @@
 
 #include "drivers/transport/device_listing.hpp"
 #include "firmware_sim/usb/bus_device.hpp"
+#include "input/sample/motion_sample.hpp"
 #include "input/sample/pen_sample.hpp"
 #include "tests/kernel/plugged_device.hpp"
 
@@ -28,6 +29,8 @@ struct Taken {
 
 /// The samples of a recording, decoded as `limn decode` does.
 std::vector<PenSample> samples_of(const std::string& trace);
+/// The same of 3D mice.
+std::vector<MotionSample> motions_of(const std::string& trace);
 
 /// The rows of `backend` that are of such a device on this cable, by interface; waits until Linux
 /// has `count`.

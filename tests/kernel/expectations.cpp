@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <string>
 #include <vector>
 
 namespace limn::test {
@@ -58,6 +60,31 @@ void expect_reports(const Taken& taken, const Taken& expected, std::size_t enoug
     ADD_FAILURE() << "report " << differ - reports.begin() << " of " << reports.size()
                   << " of interface " << interface << " is " << testing::PrintToString(*differ)
                   << " for " << testing::PrintToString(*other);
+  }
+}
+
+void expect_motions(const Taken& taken, const Taken& expected) {
+  auto got = motions_of(taken.trace);
+  const auto all = motions_of(expected.trace);
+  // A recording that ends in mid-motion ends that, too.
+  if (!got.empty() && got.back().silence) got.pop_back();
+  EXPECT_EQ(got.size(), taken.report_count);
+  ASSERT_LE(got.size(), all.size());
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    SCOPED_TRACE("motion " + std::to_string(i));
+    const MotionSample& a = got[i];
+    const MotionSample& b = all[i];
+    ASSERT_EQ(a.raw, b.raw);
+    ASSERT_EQ(a.deflection, b.deflection);
+    ASSERT_EQ(a.buttons, b.buttons);
+    ASSERT_EQ(a.battery_percent, b.battery_percent);
+    ASSERT_EQ(a.lost, b.lost);
+    ASSERT_EQ(a.disturbances, b.disturbances);
+    const auto marks = [](const MotionSample& one) {
+      return std::array{one.translation_told, one.rotation_told, one.rests_exactly,
+                        one.changes_only,     one.silence,       one.lost_estimated};
+    };
+    ASSERT_EQ(marks(a), marks(b));
   }
 }
 

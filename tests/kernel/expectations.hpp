@@ -28,6 +28,10 @@ Taken expected_from(std::string_view name, std::string_view movement, std::size_
 /// first.
 void expect_reports(const Taken& taken, const Taken& expected, std::size_t enough);
 
+/// Fails unless the motions of these reports, decoded, are those that the device gives first, but
+/// for their times.
+void expect_motions(const Taken& taken, const Taken& expected);
+
 /// Fails unless what an event node told of a pen in range is what changes from one of `expected`'s
 /// samples to the next, each within one count (one degree of tilt), and at least `at_least` of it.
 void expect_changes(const Taken& kernel, const Taken& expected, std::size_t at_least);

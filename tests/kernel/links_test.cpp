@@ -7,16 +7,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <future>
+#include <numbers>
 #include <string_view>
 #include <thread>
 
-#include "drivers/devices/trace_decoder.hpp"
 #include "drivers/hid/descriptor_parser.hpp"
 #include "firmware_sim/devices/catalogue.hpp"
+#include "firmware_sim/devices/space_mouse.hpp"
+#include "firmware_sim/devices/space_navigator.hpp"
 #include "firmware_sim/link/usbip_server.hpp"
+#include "firmware_sim/usb/usb_device.hpp"
 #include "tests/kernel/device_paths.hpp"
 #include "tests/kernel/expectations.hpp"
 #include "tests/kernel/hidapi_reader.hpp"
@@ -189,9 +193,8 @@ class AllOthers {
     return wait_for_rows(backend, cable_, wanted);
   }
 
-  static std::string movement(const Held& held) {
-    return held.name.starts_with("space") ? "push" : "signature";
-  }
+  static bool is_mouse(const Held& held) { return held.name.starts_with("space"); }
+  static std::string movement(const Held& held) { return is_mouse(held) ? "push" : "signature"; }
 
  private:
   Cable cable_;
@@ -216,6 +219,7 @@ void expect_all_others(Cable cable, Backend backend) {
       cut_as_linux_does(expected, held.made->bus());
     const Taken got = taken[next++].get();
     expect_reports(got, expected, kShort);
+    if (AllOthers::is_mouse(held)) expect_motions(got, expected);
   });
 }
 
@@ -266,103 +270,94 @@ TEST_F(KernelLinks, EveryDeviceIsReadByHidapisLibusb) {
   });
 }
 
-/// The values of axis `axis` (0 to 5) in the reports of the SpaceMouse: number 1, all six as le16.
-std::vector<int> axis_values(const Taken& expected, int axis) {
-  std::vector<int> values;
-  const auto at = static_cast<std::size_t>(1 + 2 * axis);
-  for (const Bytes& report : expected.reports.at(0)) {
-    if (report.at(0) != 1) continue;
-    values.push_back(static_cast<std::int16_t>(report.at(at) | report.at(at + 1) << 8));
+/// A knob that is led along and about all axes at once, in circles of different lengths, for ever.
+class Circles final : public firmware::KnobSensor {
+ public:
+  firmware::KnobPose measure(std::chrono::microseconds time) noexcept override {
+    firmware::KnobPose pose;
+    pose.time = time;
+    for (std::size_t axis = 0; axis < firmware::kKnobAxes; ++axis) {
+      const double turns =
+          static_cast<double>(time.count()) * 1e-6 / (2 + static_cast<double>(axis));
+      pose.deflection[axis] = 0.8 * std::sin(2 * std::numbers::pi * turns);
+    }
+    return pose;
   }
-  return values;
-}
+};
 
-/// What an axis at rest tells in the course of these values.
-std::vector<int> changes(const std::vector<int>& values) {
-  std::vector<int> changes;
-  int last = 0;
-  for (const int value : values) {
-    if (value != last) changes.push_back(value);
-    last = value;
+/// A 3D mouse so led, its hand held back.
+template <class Function>
+struct CircledMouse {
+  /// What it gives to a host without a kernel.
+  static Taken expected(std::size_t enough) {
+    CircledMouse mouse;
+    return expected_of(mouse.usb, enough, Setup::kNone);
   }
-  return changes;
-}
 
-/// What limn makes of a recording of a 3D mouse: the counts of each deflection, once while it
-/// stays.
-std::vector<std::array<std::int32_t, kMotionAxes>> deflections_of(const std::string& trace) {
+  Circles hand;
+  Function function{hand};
+  firmware::UsbDevice usb{function};
+  StartedDevice device{usb};
+};
+
+/// The axes' counts of a 3D mouse, once while they stay.
+std::vector<std::array<std::int32_t, kMotionAxes>> changes_of_motion(const Taken& taken) {
   std::vector<std::array<std::int32_t, kMotionAxes>> all;
-  auto reader = open_trace(memory_bytes(trace), {});
-  EXPECT_TRUE(reader) << reader.error().what;
-  if (!reader) return all;
-  TraceDecoder decoder(*std::move(reader), {.salvage = true});
-  for (;;) {
-    const auto sample = decoder.next_any();
-    EXPECT_TRUE(sample) << sample.error().what;
-    const auto* const motion = sample ? std::get_if<const MotionSample*>(&*sample) : nullptr;
-    if (motion == nullptr) return all;
-    const bool pushed = !(*motion)->is_zero() && (all.empty() || all.back() != (*motion)->raw);
-    if (pushed) all.push_back((*motion)->raw);
+  for (const MotionSample& motion : motions_of(taken.trace)) {
+    if (!motion.is_zero() && (all.empty() || all.back() != motion.raw)) all.push_back(motion.raw);
   }
+  return all;
 }
 
-/// A 3D mouse that calls its axes relative, of which the kernel tells no zero.
-void expect_relative_event_node(Cable cable) {
-  constexpr std::size_t kFrames = 120;  // of a push's: only half of its reports are translations
-  Held mouse("spacenavigator", "push");
-  const PluggedDevice plugged(mouse.device, cable);
-  Taking taking(wait_for_rows(Backend::kEvdev, mouse.device.spec(), cable, 1), kFrames);
-  taking.wait_until_open();
-  mouse.device.start();
-  const Taken taken = taking.get();
-  EXPECT_EQ(taken.frames, kFrames);
-  EXPECT_THAT(taken.notes, IsEmpty());
-  const auto got = deflections_of(taken.trace);
-  auto expected = deflections_of(
-      expected_from("spacenavigator", "push", 2 * kFrames + 100, Setup::kNone).trace);
-  EXPECT_GT(got.size(), kFrames / 2);
-  ASSERT_GE(expected.size(), got.size());
-  expected.resize(got.size());
-  EXPECT_EQ(got, expected);
+void expect_motion_changes(const Taken& frames, const Taken& expected) {
+  EXPECT_THAT(frames.notes, IsEmpty());
+  const auto got = changes_of_motion(frames);
+  auto all = changes_of_motion(expected);
+  EXPECT_GE(got.size(), kShort);
+  ASSERT_GE(all.size(), got.size());
+  all.resize(got.size());
+  EXPECT_EQ(got, all);
 }
 
-TEST_F(KernelLinks, RelativeEventNodesOfUhidTellTheSame) {
-  expect_relative_event_node(Cable::kUhid);
-}
-
-TEST_F(KernelLinks, RelativeEventNodesOfUsbipTellTheSame) {
-  expect_relative_event_node(Cable::kUsbip);
-}
-
-/// The event nodes of a pen and of a 3D mouse whose axes are absolute.
+/// Of what hid-generic takes for pens (as they are plugged in) and of 3D mice, of which the
+/// SpaceNavigator calls its axes relative, so that the kernel tells no zero of them.
 void expect_event_nodes(Cable cable) {
-  constexpr std::size_t kChanges = 150;  // of a push's 206 reports
-  Held pen("pen", "signature");
-  Held mouse("spacemouse", "push");
-  const PluggedDevice plugged_pen(pen.device, cable);
-  const PluggedDevice plugged_mouse(mouse.device, cable);
-  Taking of_pen(wait_for_rows(Backend::kEvdev, pen.device.spec(), cable, 1), kShort);
-  Taking of_mouse(wait_for_rows(Backend::kEvdev, mouse.device.spec(), cable, 1), kChanges);
-  of_pen.wait_until_open();
-  of_mouse.wait_until_open();
-  pen.device.start();
-  mouse.device.start();
-  const Taken drawn = of_pen.get();
-  EXPECT_EQ(drawn.frames, kShort);
-  EXPECT_THAT(drawn.notes, IsEmpty());
-  expect_changes(drawn, expected_from("pen", "signature", kShort + 100, Setup::kNone), kShort - 10);
-  const Taken moved = of_mouse.get();
-  EXPECT_EQ(moved.frames, kChanges);
-  EXPECT_EQ(moved.axes.size(), 6U);
-  const Taken expected = expected_from("spacemouse", "push", kShort, Setup::kNone);
-  for (const auto& [axis, values] : moved.axes) {
-    SCOPED_TRACE("axis " + std::to_string(axis));
-    auto all = changes(axis_values(expected, axis));
-    const auto got = changes(values);
-    ASSERT_GE(all.size(), got.size());
-    all.resize(got.size());
-    EXPECT_EQ(got, all);
+  constexpr std::size_t kFrames =
+      kShort + 40;  // some are of a pen that leaves, or tell nothing new
+  std::vector<std::unique_ptr<Held>> pens;
+  std::vector<std::unique_ptr<PluggedDevice>> plugged;
+  for (const char* name : {"pen", "huion", "huion-1060", "xppen"}) {
+    pens.push_back(std::make_unique<Held>(name, "signature"));
+    plugged.push_back(std::make_unique<PluggedDevice>(pens.back()->device, cable));
   }
+  CircledMouse<firmware::SpaceMouse> mouse;
+  CircledMouse<firmware::SpaceNavigator> navigator;
+  std::vector<WantedRows> wanted;
+  for (const auto& pen : pens) wanted.push_back({pen->device.spec(), 1});
+  wanted[3].count = 2;  // which of its interfaces has the pen is its own affair
+  for (StartedDevice* device : {&mouse.device, &navigator.device}) {
+    plugged.push_back(std::make_unique<PluggedDevice>(*device, cable));
+    wanted.push_back({device->spec(), 1});
+  }
+  std::vector<Taking> taken;
+  for (auto& rows : wait_for_rows(Backend::kEvdev, cable, wanted)) {
+    taken.emplace_back(std::move(rows), kFrames);
+  }
+  for (Taking& one : taken) one.wait_until_open();
+  for (const auto& pen : pens) pen->device.start();
+  mouse.device.start();
+  navigator.device.start();
+  for (std::size_t i = 0; i < pens.size(); ++i) {
+    SCOPED_TRACE(pens[i]->name);
+    const Taken drawn = taken[i].get();
+    EXPECT_THAT(drawn.notes, IsEmpty());
+    expect_changes(drawn, expected_from(pens[i]->name, "signature", 2 * kFrames, Setup::kNone),
+                   kShort);
+  }
+  SCOPED_TRACE("3D mice");
+  const std::size_t reports = 2 * kFrames;
+  expect_motion_changes(taken[4].get(), CircledMouse<firmware::SpaceMouse>::expected(reports));
+  expect_motion_changes(taken[5].get(), CircledMouse<firmware::SpaceNavigator>::expected(reports));
 }
 
 TEST_F(KernelLinks, EventNodesOfUhidTellTheSame) { expect_event_nodes(Cable::kUhid); }
