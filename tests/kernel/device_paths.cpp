@@ -27,7 +27,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPatience = 20s;
-constexpr auto kLookAgain = 400ms;  // looking is work for an emulated processor, waiting is none
+constexpr auto kLookAgain = 1s;  // looking is work for an emulated processor, waiting is none
 
 /// UHID has a place where USB has an interface: "limn/simulated/1234.0/input1".
 int interface_of(const ListedDevice& row) {
