@@ -1,10 +1,10 @@
 #include "modeler/surface/primitives.hpp"
 
-#include <cmath>
 #include <numbers>
-#include <string>
+#include <utility>
 #include <vector>
 
+#include "modeler/base/tolerance.hpp"
 #include "modeler/surface/constructions.hpp"
 
 namespace limn {
@@ -14,18 +14,24 @@ using Eigen::Vector3d;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
+/// Sizes below are coincidence, above nothing that doubles could tell to kGeometric.
+constexpr double kLargest = 1e9;
+
 Expected<void> check_size(const char* name, double size, bool may_be_zero = false) {
-  if (std::isfinite(size) && (size > 0 || (may_be_zero && size == 0))) return {};
-  return fail(ErrorCode::kOutOfRange, name, "the size is not a finite number above 0",
+  if ((size >= kGeometric && size <= kLargest) || (may_be_zero && size == 0)) return {};
+  return fail(ErrorCode::kOutOfRange, name, "the size is not from 1e-9 to 1e9 mm",
               "give it in mm, above 0");
 }
 
-BsplineCurve<3> line(const Vector3d& from, const Vector3d& to, double end) {
-  return *BsplineCurve<3>::make(*KnotVector::make_clamped(1, 0, end), {from, to});
+Expected<BsplineCurve<3>> line(const Vector3d& from, const Vector3d& to, double end) {
+  auto knots = KnotVector::make_clamped(1, 0, end);
+  if (!knots) return tl::unexpected(std::move(knots.error()));
+  return BsplineCurve<3>::make(*std::move(knots), {from, to});
 }
 
 /// The half circle in the plane of a and b: centre - b, centre + a, centre + b; or all of it.
-BsplineCurve<3> arc(const Vector3d& center, const Vector3d& a, const Vector3d& b, bool full) {
+Expected<BsplineCurve<3>> arc(const Vector3d& center, const Vector3d& a, const Vector3d& b,
+                              bool full) {
   const double diagonal = std::numbers::sqrt2 / 2;
   const double quarter = std::numbers::pi / 2;
   std::vector<Vector3d> points;
@@ -44,8 +50,15 @@ BsplineCurve<3> arc(const Vector3d& center, const Vector3d& a, const Vector3d& b
     if (i > 0) interior.insert(interior.end(), 2, static_cast<double>(i) * quarter);
   }
   const double end = static_cast<double>(quarters) * quarter;
-  return *BsplineCurve<3>::make_rational({*KnotVector::make_clamped(2, 0, end, interior)}, points,
-                                         weights);
+  auto knots = KnotVector::make_clamped(2, 0, end, interior);
+  if (!knots) return tl::unexpected(std::move(knots.error()));
+  return BsplineCurve<3>::make_rational({*std::move(knots)}, points, weights);
+}
+
+/// Turned all the way round frame.z.
+Expected<BsplineSurface> revolved(const Expected<BsplineCurve<3>>& profile, const Frame& frame) {
+  if (!profile) return tl::unexpected(profile.error());
+  return revolve(*profile, frame, kTurn);
 }
 
 }  // namespace
@@ -69,32 +82,34 @@ Expected<std::array<BsplineSurface, 6>> make_box(const Frame& frame, const Vecto
   for (const double s : {x, y, z}) {
     if (auto ok = check_size("size", s); !ok) return tl::unexpected(std::move(ok.error()));
   }
-  const Vector3d far = frame.point(x, y, z);
-  const Frame low_x{frame.origin, frame.z, frame.y, -frame.x};
-  const Frame low_y{frame.origin, frame.x, frame.z, -frame.y};
-  const Frame low_z{frame.origin, frame.y, frame.x, -frame.z};
-  const Frame high_x{frame.point(x, 0, 0), frame.y, frame.z, frame.x};
-  const Frame high_y{frame.point(0, y, 0), frame.z, frame.x, frame.y};
-  const Frame high_z{frame.point(0, 0, z), frame.x, frame.y, frame.z};
-  std::array<BsplineSurface, 6> faces = {*make_plane(low_x, z, y), *make_plane(high_x, y, z),
-                                         *make_plane(low_y, x, z), *make_plane(high_y, z, x),
-                                         *make_plane(low_z, y, x), *make_plane(high_z, x, y)};
-  if (!far.allFinite()) {
-    return fail(ErrorCode::kOutOfRange, "size", "a corner is not finite", "give it in mm");
+  const std::array<Frame, 6> corners = {{
+      {frame.origin, frame.z, frame.y, -frame.x},
+      {frame.point(x, 0, 0), frame.y, frame.z, frame.x},
+      {frame.origin, frame.x, frame.z, -frame.y},
+      {frame.point(0, y, 0), frame.z, frame.x, frame.y},
+      {frame.origin, frame.y, frame.x, -frame.z},
+      {frame.point(0, 0, z), frame.x, frame.y, frame.z},
+  }};
+  const std::array<std::array<double, 2>, 6> sides = {
+      {{z, y}, {y, z}, {x, z}, {z, x}, {y, x}, {x, y}}};
+  std::array<BsplineSurface, 6> faces;
+  for (std::size_t i = 0; i < 6; ++i) {
+    auto face = make_plane(corners[i], sides[i][0], sides[i][1]);
+    if (!face) return tl::unexpected(std::move(face.error()));
+    faces[i] = *std::move(face);
   }
   return faces;
 }
 
 Expected<BsplineSurface> make_disc(const Frame& frame, double radius) {
   if (auto ok = check_size("radius", radius); !ok) return tl::unexpected(std::move(ok.error()));
-  return revolve(line(frame.point(radius, 0, 0), frame.origin, radius), frame, kTurn);
+  return revolved(line(frame.point(radius, 0, 0), frame.origin, radius), frame);
 }
 
 Expected<BsplineSurface> make_cylinder(const Frame& frame, double radius, double height) {
   if (auto ok = check_size("radius", radius); !ok) return tl::unexpected(std::move(ok.error()));
   if (auto ok = check_size("height", height); !ok) return tl::unexpected(std::move(ok.error()));
-  return revolve(line(frame.point(radius, 0, 0), frame.point(radius, 0, height), height), frame,
-                 kTurn);
+  return revolved(line(frame.point(radius, 0, 0), frame.point(radius, 0, height), height), frame);
 }
 
 Expected<BsplineSurface> make_cone(const Frame& frame, double bottom_radius, double top_radius,
@@ -106,13 +121,13 @@ Expected<BsplineSurface> make_cone(const Frame& frame, double bottom_radius, dou
     return tl::unexpected(std::move(ok.error()));
   }
   if (auto ok = check_size("height", height); !ok) return tl::unexpected(std::move(ok.error()));
-  return revolve(line(frame.point(bottom_radius, 0, 0), frame.point(top_radius, 0, height), height),
-                 frame, kTurn);
+  return revolved(
+      line(frame.point(bottom_radius, 0, 0), frame.point(top_radius, 0, height), height), frame);
 }
 
 Expected<BsplineSurface> make_sphere(const Frame& frame, double radius) {
   if (auto ok = check_size("radius", radius); !ok) return tl::unexpected(std::move(ok.error()));
-  return revolve(arc(frame.origin, radius * frame.x, radius * frame.z, false), frame, kTurn);
+  return revolved(arc(frame.origin, radius * frame.x, radius * frame.z, false), frame);
 }
 
 Expected<BsplineSurface> make_torus(const Frame& frame, double ring_radius, double tube_radius) {
@@ -126,9 +141,9 @@ Expected<BsplineSurface> make_torus(const Frame& frame, double ring_radius, doub
     return fail(ErrorCode::kOutOfRange, "tube radius", "the tube is not thinner than the ring",
                 "make the tube's radius less than the ring's");
   }
-  return revolve(
+  return revolved(
       arc(frame.point(ring_radius, 0, 0), tube_radius * frame.x, tube_radius * frame.z, true),
-      frame, kTurn);
+      frame);
 }
 
 }  // namespace limn

@@ -75,7 +75,7 @@ TEST(SurfaceIndexLaw, BoundsHold) {
 }
 
 TEST(ClosestPointLaw, NothingSampledIsNearer) {
-  test::for_all(60, [](Rng& rng) {
+  test::for_all(30, [](Rng& rng) {
     const auto surface = any_surface(rng);
     const SurfaceIndex index(surface);
     constexpr std::size_t kSide = 60;
@@ -104,7 +104,7 @@ TEST(ClosestPointLaw, NothingSampledIsNearer) {
 }
 
 TEST(ClosestPointLaw, APointOfTheSurfaceIsItsOwn) {
-  test::for_all(60, [](Rng& rng) {
+  test::for_all(40, [](Rng& rng) {
     const auto surface = any_surface(rng);
     const SurfaceIndex index(surface);
     for (int i = 0; i < 10; ++i) {

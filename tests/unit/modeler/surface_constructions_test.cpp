@@ -113,6 +113,13 @@ TEST(Primitives, RefuseSizesThatAreNone) {
   EXPECT_FALSE(make_box(f, {1, -1, 1}));
   EXPECT_FALSE(make_circle(f, 0));
   EXPECT_FALSE(make_disc(f, 0));
+  EXPECT_FALSE(make_disc(f, 1e-250));
+  EXPECT_FALSE(make_sphere(f, 1e300));
+  const Frame broken{Vector3d(NAN, 0, 0)};
+  EXPECT_FALSE(make_sphere(broken, 1));
+  EXPECT_FALSE(make_cylinder(broken, 1, 1));
+  EXPECT_FALSE(make_box(broken, {1, 1, 1}));
+  EXPECT_FALSE(make_circle(broken, 1));
 }
 
 BsplineCurve<3> wave(double z, int degree = 3) {
