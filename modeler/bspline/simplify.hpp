@@ -28,7 +28,7 @@ Expected<Simplified<SplineData>> remove_knot(const SplineData& spline, int direc
 
 /// Removes knots of one direction, those first that cost least, while the sum of the deviations
 /// stays within `tolerance`. The spline itself, with deviation 0, where none can go.
-/// Every round tries each knot: O(knots^3), for curves and surfaces of some hundred knots.
+/// Every round tries each knot with dense matrices: O(knots^4), for some dozens of knots.
 Simplified<SplineData> remove_knots(const SplineData& spline, int direction, double tolerance);
 
 /// Of one degree less in one direction, with a knot of multiplicity m kept m - 1 times, once at

@@ -23,9 +23,17 @@ bool repeats_along(std::span<const double> coordinates, std::size_t stride, std:
   return true;
 }
 
-Expected<void> check_finite(std::span<const double> coordinates, std::size_t width,
-                            std::size_t first_point) {
+/// Weights below are lost where they are multiplied.
+constexpr double kLeastWeight = 1e-100;
+
+Expected<void> check_numbers(std::span<const double> coordinates, std::size_t width, Form form,
+                             std::size_t first_point) {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const bool is_weight = form == Form::kRational && i % width == width - 1;
+    if (is_weight && coordinates[i] != 0 && std::abs(coordinates[i]) < kLeastWeight) {
+      return fail(ErrorCode::kOutOfRange, "weight " + std::to_string(first_point + i / width),
+                  "it is nearly 0", "scale all weights up");
+    }
     if (!std::isfinite(coordinates[i])) {
       return fail(ErrorCode::kOutOfRange,
                   "control point " + std::to_string(first_point + i / width),
@@ -55,7 +63,7 @@ Expected<SplineData> SplineData::make(std::span<const KnotVector> knots, int dim
                     std::to_string(expected),
                 "give one control point a basis function");
   }
-  if (auto finite = check_finite(coordinates, width, 0); !finite) {
+  if (auto finite = check_numbers(coordinates, width, form, 0); !finite) {
     return tl::unexpected(std::move(finite.error()));
   }
   std::size_t stride = width;
@@ -93,7 +101,7 @@ Expected<void> SplineData::set_control_point(std::size_t index,
                                              std::span<const double> coordinates) {
   const auto width = static_cast<std::size_t>(this->width());
   LIMN_EXPECT(index < count() && coordinates.size() == width);
-  if (auto finite = check_finite(coordinates, width, index); !finite) return finite;
+  if (auto finite = check_numbers(coordinates, width, form_, index); !finite) return finite;
   const bool positive = !is_rational() || coordinates.back() > 0;
   const bool prove = !(positive && positive_weights_);
   const SplineData before = prove ? *this : SplineData();

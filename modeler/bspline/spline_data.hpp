@@ -36,9 +36,9 @@ class SplineData {
   static constexpr int kMostDimension = 10;
 
   /// Errors: kPointCount unless there are width() coordinates a basis function; kOutOfRange for a
-  /// coordinate that is not finite or a periodic direction whose last points do not equal its
-  /// first; kNumeric where the denominator is not positive, or could not be proved to be.
-  /// Precondition: 1 to 3 knot vectors, a dimension from 1 to 10.
+  /// coordinate that is not finite, a weight nearly 0 (below 1e-100), or a periodic direction whose
+  /// last points do not equal its first; kNumeric where the denominator is not positive, or could
+  /// not be proved to be. Precondition: 1 to 3 knot vectors, a dimension from 1 to 10.
   static Expected<SplineData> make(std::span<const KnotVector> knots, int dimension, Form form,
                                    std::span<const double> coordinates);
 

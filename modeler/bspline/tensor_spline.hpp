@@ -31,8 +31,8 @@ class ControlPoints {
     using pointer = void;
     using reference = Point;
 
-    Iterator(const ControlPoints* points, std::size_t at) : points_(points), at_(at) {}
-    Point operator*() const { return (*points_)[at_]; }
+    Iterator(const SplineData* spline, std::size_t at) : spline_(spline), at_(at) {}
+    Point operator*() const { return ControlPoints(*spline_)[at_]; }
     Iterator& operator++() {
       ++at_;
       return *this;
@@ -45,7 +45,7 @@ class ControlPoints {
     friend bool operator==(const Iterator& a, const Iterator& b) { return a.at_ == b.at_; }
 
    private:
-    const ControlPoints* points_;
+    const SplineData* spline_;  // not the view, which may go
     std::size_t at_;
   };
 
@@ -62,8 +62,8 @@ class ControlPoints {
   }
   Point front() const noexcept { return (*this)[0]; }
   Point back() const noexcept { return (*this)[size() - 1]; }
-  Iterator begin() const noexcept { return {this, 0}; }
-  Iterator end() const noexcept { return {this, size()}; }
+  Iterator begin() const noexcept { return {spline_, 0}; }
+  Iterator end() const noexcept { return {spline_, size()}; }
 
  private:
   const SplineData* spline_;

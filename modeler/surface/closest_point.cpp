@@ -106,10 +106,20 @@ class ClosestSearch {
     }
     settle_later();
     const double distance = std::sqrt(best_);
+    if (!std::isfinite(distance)) return beyond_numbers();
     return {parameter_, point_, distance, std::max(0.0, distance - abandoned_)};
   }
 
  private:
+  /// Where squares of distances overflow: any point, and no claim.
+  ClosestPoint beyond_numbers() const {
+    const BsplineSurface& surface = index_.surface();
+    const Vector2d at(surface.knots(0).domain_begin(), surface.knots(1).domain_begin());
+    const Vector3d point = index_.evaluator().point(at.x(), at.y());
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return {at, point, (point - p_).stableNorm(), kInfinity};
+  }
+
   struct Waiting {
     double square;
     std::int32_t node;
@@ -276,11 +286,12 @@ class ClosestSearch {
   }
 
   void halve(Patch patch, const PatchBound& bound, int halvings) {
-    if (halvings == kMostHalvings || cells_ >= kMostCells) {
+    const int direction = direction_to_halve(bound);
+    if (halvings == kMostHalvings || cells_ >= kMostCells || !patch.can_halve(direction)) {
       give_up(bound);
       return;
     }
-    Patch after = patch.halve(direction_to_halve(bound));
+    Patch after = patch.halve(direction);
     // The nearer half first: what it finds may spare the other.
     PatchBound bounds[2];
     double least[2];

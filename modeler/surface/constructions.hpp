@@ -74,9 +74,10 @@ struct GridSurface {
 /// kNumeric where all points of neighbouring rows or columns coincide. [PT97 ch. 9.2]
 Expected<GridSurface> interpolate_grid(const PointGrid& grid, int degree = 3);
 
-/// By least squares with as few control points as it takes to come within `tolerance` (mm) of all
-/// points, corners kept; at most as many as interpolation has. Errors as interpolate_grid(), and
-/// kOutOfRange for a tolerance that is not above 0. [PT97 ch. 9.4]
+/// By least squares within `tolerance` (mm) of all points, corners kept. Control points are added,
+/// a quarter at a time in the direction that needs them more, until it is met or there are as many
+/// as points: `deviation` tells. Errors as interpolate_grid(), and kOutOfRange for a tolerance that
+/// is not above 0. [PT97 ch. 9.4]
 Expected<GridSurface> approximate_grid(const PointGrid& grid, double tolerance, int degree = 3);
 
 }  // namespace limn

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "modeler/base/tolerance.hpp"
@@ -75,12 +76,12 @@ struct Arc {
   double parameter(double x) const { return low + x * (high - low); }
 };
 
-/// The curve's Bézier parts, halved until their weights are positive.
+/// The curve's Bézier parts, halved until their weights are positive. None where numbers overflow.
 template <int kDimension>
-std::vector<Arc<kDimension>> arcs_of(const BsplineCurve<kDimension>& curve) {
+std::optional<std::vector<Arc<kDimension>>> arcs_of(const BsplineCurve<kDimension>& curve) {
   const auto bezier = to_bezier(curve, 0);
+  if (!bezier) return std::nullopt;
   std::vector<Arc<kDimension>> out;
-  if (!bezier) return out;
   const int p = bezier->knots().degree();
   const auto ends = bezier->knots().breakpoints();
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
@@ -112,9 +113,10 @@ struct Hull {
   using Point = Eigen::Matrix<double, kDimension, 1>;
   Point low;
   Point high;
-  Point chord;           ///< from the first control point to the last
-  double thickness = 0;  ///< how far control points lie off the chord's line
-  double cosine = 1;     ///< of the largest angle between a leg and the chord, for straight parts
+  Point chord;  ///< from the first control point to the last
+  /// How far points are from those that run evenly along the chord: from the line at equal x.
+  double unevenness = 0;
+  double cosine = 1;  ///< of the largest angle between a leg and the chord, for straight parts
 
   explicit Hull(const Arc<kDimension>& arc) {
     low = high = arc.control(0);
@@ -125,9 +127,11 @@ struct Hull {
       const Point p = arc.control(i);
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
-      const Point from = p - arc.control(0);
-      const double along = length > 0 ? from.dot(chord) / length : 0.0;
-      thickness = std::max(thickness, std::sqrt(std::max(0.0, from.squaredNorm() - along * along)));
+      // The line in the same form; unequal weights shift points along it by as much of it at most.
+      const double x = n > 1 ? static_cast<double>(i) / static_cast<double>(n - 1) : 0.0;
+      const double weight = std::abs(arc.weights[i] / arc.weights[0] - 1);
+      unevenness =
+          std::max(unevenness, (p - arc.control(0) - x * chord).norm() + 2 * weight * length);
     }
     // A rational part's derivative is a positive combination of P_j - P_i, i < j.
     for (std::size_t i = 0; i < n; ++i) {
@@ -157,9 +161,11 @@ class CrossingSearch {
 
   CurveCrossings run(const BsplineCurve<kDimension>& first,
                      const BsplineCurve<kDimension>& second) {
+    const auto ones = arcs_of(first);
     const auto others = arcs_of(second);
-    for (const OneArc& a : arcs_of(first)) {
-      for (const OneArc& b : others) visit(a, b, 0);
+    if (!ones || !others) return {{}, false};
+    for (const OneArc& a : *ones) {
+      for (const OneArc& b : *others) visit(a, b, 0);
     }
     merge();
     return std::move(found_);
@@ -170,6 +176,7 @@ class CrossingSearch {
   struct Place {
     Point point;
     double reach;
+    Point end;  ///< where the touch ends: what crosses there is part of it
   };
 
   void visit(const OneArc& a, const OneArc& b, int halvings) {
@@ -177,7 +184,7 @@ class CrossingSearch {
     const OneHull hb(b);
     if (apart(ha, hb)) return;
     if (crosses_once(ha, hb) && newton(a, b)) return;
-    if ((ha.thickness <= 0.5 * kGeometric && hb.thickness <= 0.5 * kGeometric) ||
+    if ((ha.unevenness <= 0.5 * kGeometric && hb.unevenness <= 0.5 * kGeometric) ||
         halvings >= kMostHalvings) {
       touch(a, b, ha, hb);
       return;
@@ -230,7 +237,7 @@ class CrossingSearch {
         if (r.norm() > kGeometric) return false;
         found_.crossings.push_back(
             {a.parameter(std::clamp(x, 0.0, 1.0)), b.parameter(std::clamp(y, 0.0, 1.0)), 0});
-        places_.push_back({p, 0});
+        places_.push_back({p, 0, p});
         return true;
       }
       x = std::clamp(x + dx, -0.5, 1.5);
@@ -262,13 +269,31 @@ class CrossingSearch {
     const auto [d_low, y_low] = distance(low);
     const auto [d_high, y_high] = distance(high);
     constexpr double kNear = 2 * kGeometric;  // both are up to half of it off their chords
-    if (std::min(d_low, d_high) > kNear) return;
+    if (std::min(d_low, d_high) > kNear) {
+      // Nearly parallel, they may cross between: d changes linearly along both.
+      const Point from = a0 + low * ha.chord - b0;
+      const Point to = a0 + high * ha.chord - b0;
+      const Point along_b = length_b > 0 ? Point(hb.chord / length_b) : Point(Point::Zero());
+      const Point off_low = from - from.dot(along_b) * along_b;
+      const Point change = to - to.dot(along_b) * along_b - off_low;
+      const double square = change.squaredNorm();
+      if (!(square > 0)) return;
+      const double part = std::clamp(-off_low.dot(change) / square, 0.0, 1.0);
+      const double between = low + part * (high - low);
+      const auto [d, y] = distance(between);
+      if (d > kNear) return;
+      found_.crossings.push_back({a.parameter(between), b.parameter(y), 0});
+      const Point p = a0 + between * ha.chord;
+      places_.push_back({p, 0, p});
+      return;
+    }
     const bool both = d_low <= kNear && d_high <= kNear;
     const double x = d_low <= kNear ? low : high;
     const double y = d_low <= kNear ? y_low : y_high;
     const double run = both ? (high - low) * length_a : 0.0;
     found_.crossings.push_back({a.parameter(x), b.parameter(y), run > 10 * kGeometric ? run : 0.0});
-    places_.push_back({a0 + x * ha.chord, std::min(length_a, length_b)});
+    places_.push_back(
+        {a0 + x * ha.chord, std::min(length_a, length_b), a0 + (both ? high : x) * ha.chord});
   }
 
   void merge() {
@@ -289,16 +314,21 @@ class CrossingSearch {
       const Place& place = places_[i];
       Kept* known = nullptr;
       for (Kept& k : kept) {
-        const double touching = k.end.reach + place.reach;
-        const bool same = (k.end.point - place.point).norm() <= 10 * kGeometric + touching;
+        // What crosses clearly is no part of a touch beside it.
+        const bool both_touch = k.end.reach > 0 && place.reach > 0;
+        const double touching = both_touch ? k.end.reach + place.reach : 0.0;
+        const double near_it = 10 * kGeometric + touching;
+        const bool same = (k.end.point - place.point).norm() <= near_it ||
+                          (k.end.end - place.point).norm() <= near_it ||
+                          (k.end.point - place.end).norm() <= near_it;
         // A closed curve passes its first point again at another parameter of the other curve.
-        if (same && (touching > 0 || near(k.crossing, next))) known = &k;
+        if (same && (k.end.reach > 0 || place.reach > 0 || near(k.crossing, next))) known = &k;
       }
       if (known == nullptr) {
         kept.push_back({next, place});
       } else {
-        known->crossing.run = std::max(known->crossing.run, known->crossing.run + next.run);
-        known->end = place;
+        known->crossing.run += next.run;
+        if (place.reach > 0) known->end = place;
       }
     }
     found_.crossings.clear();
@@ -321,14 +351,17 @@ ClosestOnCurve<kDimension> find_closest(const BsplineCurve<kDimension>& curve,
                                         const Eigen::Matrix<double, kDimension, 1>& p) {
   using Point = Eigen::Matrix<double, kDimension, 1>;
   // Stationary places of |C - p|^2 on each part: roots of (A - w p) . (A' w - A w'), a polynomial.
-  ClosestOnCurve<kDimension> best;
-  best.distance = std::numeric_limits<double>::infinity();
+  const double begin = curve.knots().domain_begin();
+  ClosestOnCurve<kDimension> best{begin, curve.point(begin), 0};
+  best.distance = (best.point - p).stableNorm();
   const auto consider = [&](double t) {
     const Point point = curve.point(t);
-    const double distance = (point - p).norm();
+    const double distance = (point - p).stableNorm();
     if (distance < best.distance) best = {t, point, distance};
   };
-  for (const auto& arc : arcs_of(curve)) {
+  const auto arcs = arcs_of(curve);
+  if (!arcs) return best;
+  for (const auto& arc : *arcs) {
     consider(arc.low);
     consider(arc.high);
     const Hull<kDimension> hull(arc);
@@ -367,9 +400,11 @@ ClosestOnCurve<kDimension> find_closest(const BsplineCurve<kDimension>& curve,
 
 PlaneCrossings cross_plane(const BsplineCurve<3>& curve, const Eigen::Vector3d& point,
                            const Eigen::Vector3d& normal) {
-  const Eigen::Vector3d n = normal.normalized();
+  const Eigen::Vector3d n = normal.stableNormalized();
   PlaneCrossings out;
-  for (const auto& arc : arcs_of(curve)) {
+  const auto arcs = arcs_of(curve);
+  if (!arcs) return {{}, {}, false};
+  for (const auto& arc : *arcs) {
     std::vector<double> f;
     double rounding = 0;
     bool flat = true;

@@ -16,10 +16,11 @@ struct ParameterRange {
 struct PlaneCrossings {
   std::vector<double> at;              ///< ascending; a touching place once
   std::vector<ParameterRange> within;  ///< spans that lie in the plane to kGeometric
+  bool complete = true;  ///< false where the curve's numbers are too large to work with
 };
 
 /// All places where (C(t) - point) . normal is zero: none is missed (modeler/bspline/roots.hpp).
-/// Precondition: a finite normal that is not zero, of any length.
+/// Precondition: finite, a normal that is not zero, of any length.
 PlaneCrossings cross_plane(const BsplineCurve<3>& curve, const Eigen::Vector3d& point,
                            const Eigen::Vector3d& normal);
 
@@ -47,7 +48,7 @@ CurveCrossings cross_curves(const BsplineCurve<3>& first, const BsplineCurve<3>&
 template <int kDimension>
 struct ClosestOnCurve {
   double t = 0;
-  Eigen::Matrix<double, kDimension, 1> point;
+  Eigen::Matrix<double, kDimension, 1> point = Eigen::Matrix<double, kDimension, 1>::Zero();
   double distance = 0;
 };
 ClosestOnCurve<2> closest_on_curve(const BsplineCurve<2>& curve, const Eigen::Vector2d& p);

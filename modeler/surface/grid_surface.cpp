@@ -140,7 +140,7 @@ Expected<GridSurface> approximate_grid(const PointGrid& grid, double tolerance, 
   const int most_v = static_cast<int>(lines->v.size());
   int count_u = degree_u + 1;
   int count_v = degree_v + 1;
-  // A direction grows by half as long as growing it alone brings more than growing the other.
+  // A direction grows by a quarter as long as growing it alone brings more than growing the other.
   for (;;) {
     auto ku = shared_knots(degree_u, lines->u, count_u);
     if (!ku) return tl::unexpected(std::move(ku.error()));

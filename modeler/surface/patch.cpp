@@ -45,7 +45,7 @@ Largest largest_of(Net net, const Vector3d& normal) {
     const Vector3d x(net[i], net[i + 1], net[i + 2]);
     const double off = x.dot(normal);
     out.off = std::max(out.off, std::abs(off));
-    out.along = std::max(out.along, x.squaredNorm() - off * off);
+    out.along = std::max(out.along, (x - off * normal).squaredNorm());
     out.weight = std::max(out.weight, std::abs(net[i + 3]));
   }
   out.along = std::sqrt(out.along);
@@ -257,6 +257,13 @@ PatchBound bound_of(const Patch& patch, const SurfaceJet& jet) {
     out.along.point = std::max(out.along.point, local.head<2>().squaredNorm());
     least_weight = std::min(least_weight, x[3]);
   }
+  // What extraction and evaluation round: neighbours' boxes may not leave a crack.
+  const double rounding =
+      2e-15 * std::max(out.low.cwiseAbs().maxCoeff(), out.high.cwiseAbs().maxCoeff());
+  out.low.array() -= rounding;
+  out.high.array() += rounding;
+  out.frame_low.array() -= rounding;
+  out.frame_high.array() += rounding;
   out.reach = std::sqrt(out.reach);
   out.along.point = std::sqrt(out.along.point);
   out.off.point = std::max(-out.frame_low.z(), out.frame_high.z());

@@ -34,6 +34,12 @@ struct Patch {
   /// Whether the Bernstein coefficients of the denominator are, so that hulls hold.
   bool has_positive_weights() const noexcept;
 
+  /// Whether there is a parameter between the ends of `direction`.
+  bool can_halve(int direction) const noexcept {
+    const double middle = box.center()[direction];
+    return middle > box.low[direction] && middle < box.high[direction];
+  }
+
   /// Cuts it in the middle of `direction`: *this becomes the part before, the result is the other.
   Patch halve(int direction);
 };
@@ -83,7 +89,7 @@ struct PatchBound {
   Reach off;
   double reach = 0;  ///< |S(u,v) - jet.point|
 
-  Eigen::Vector3d low;  ///< of the box along x, y, z
+  Eigen::Vector3d low;  ///< of the box along x, y, z, widened by what rounding may cost
   Eigen::Vector3d high;
 
   /// The box along the tangent plane: coordinates frame^T (S - jet.point) lie in

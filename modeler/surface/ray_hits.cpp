@@ -21,6 +21,8 @@ constexpr int kMostHalvings = 100;  ///< of a leaf
 constexpr int kMostCells = 4096;    ///< halves looked at in one query
 /// Neighbours share their edges: a root this far outside a patch, in its half sides, counts.
 constexpr double kEdge = 1e-9;
+/// Components of a direction below this are none: dividing by them overflows.
+constexpr double kNoDirection = 1e-300;
 
 /// The part of the ray inside a box, first > last where there is none. The box is widened by
 /// rounding, so that what touches it is inside.
@@ -33,7 +35,7 @@ class RaySearch {
  public:
   RaySearch(const SurfaceIndex& index, const Ray& ray, bool first_only)
       : index_(index), ray_(ray), first_only_(first_only), most_(ray.most) {
-    const double length = ray.direction.norm();
+    const double length = ray.direction.stableNorm();
     const Vector3d along = ray.direction / length;
     across_[0] = along.unitOrthogonal();
     across_[1] = along.cross(across_[0]);
@@ -61,15 +63,14 @@ class RaySearch {
   Interval meet(const Vector3d& low, const Vector3d& high) const noexcept {
     Interval out{0, most_};
     for (Eigen::Index d = 0; d < 3; ++d) {
-      // 0 times infinity is not a number, which min and max below leave out.
+      if (std::abs(ray_.direction[d]) < kNoDirection) {
+        if (ray_.origin[d] < low[d] || ray_.origin[d] > high[d]) return {1, 0};
+        continue;
+      }
       const double a = (low[d] - ray_.origin[d]) * inverse_[d];
       const double b = (high[d] - ray_.origin[d]) * inverse_[d];
       const double near = a < b ? a : b;
       const double far = a < b ? b : a;
-      if (ray_.direction[d] == 0) {
-        if (ray_.origin[d] < low[d] || ray_.origin[d] > high[d]) return {1, 0};
-        continue;
-      }
       out.first = near > out.first ? near : out.first;
       out.last = far < out.last ? far : out.last;
     }
@@ -121,7 +122,7 @@ class RaySearch {
 
   /// Keeps of `t` where low <= origin + t direction <= high.
   static void clip(double origin, double direction, double low, double high, Interval& t) noexcept {
-    if (std::abs(direction) < 1e-300) {
+    if (std::abs(direction) < kNoDirection) {
       if (origin < low || origin > high) t = {1, 0};
       return;
     }
@@ -172,12 +173,12 @@ class RaySearch {
         Vector2d(j(0, 1) * f.y() - j(1, 1) * f.x(), j(1, 0) * f.x() - j(0, 0) * f.y()) / det;
     constexpr double kDiagonal = 1.4142135623730951;
     if (step.cwiseAbs().maxCoeff() > 1 + k * kDiagonal + kEdge) return true;
-    return pursue(b, step);
+    return pursue(b, step, k);
   }
 
   /// Newton from the middle's step; the chord with the middle's Jacobian, which contracts, where
   /// Newton leaves.
-  bool pursue(const PatchBound& b, Vector2d x) {
+  bool pursue(const PatchBound& b, Vector2d x, double turn) {
     const Vector2d center = b.box.center();
     const Vector2d half = b.box.half();
     const Matrix2d chord = (jacobian(b.jet) * half.asDiagonal()).inverse();
@@ -193,29 +194,48 @@ class RaySearch {
       Vector2d move(j(0, 1) * f.y() - j(1, 1) * f.x(), j(1, 0) * f.x() - j(0, 0) * f.y());
       move /= det;
       const double size = move.cwiseAbs().maxCoeff();
-      if (!(size < 2 * before)) {
+      const bool by_newton = size < 2 * before;
+      if (!by_newton) {
         move = -chord * f;
         if (!(move.cwiseAbs().maxCoeff() < 4)) return false;
       }
       before = size;
       x += move;
-      constexpr double kLastStep = 1e-8;  // squared it is below rounding
-      if (move.cwiseAbs().maxCoeff() < kLastStep) {
-        if (x.cwiseAbs().maxCoeff() > 1 + kEdge) return true;  // the root is a neighbour's
+      constexpr double kLastStep = 1e-8;  // of Newton's: squared it is below rounding
+      if (by_newton && move.cwiseAbs().maxCoeff() < kLastStep) {
+        if (x.cwiseAbs().maxCoeff() > 1 + kEdge) return none_inside(b, chord, turn, x);
         x = x.cwiseMax(-1.0).cwiseMin(1.0);
         const Vector2d end = center + x.cwiseProduct(half);
-        add(end, index_.jet(b, end).point, 0);
+        add(end, index_.jet(b, end).point, 0, true);
         return true;
       }
     }
     return false;
   }
 
-  void add(const Vector2d& parameter, const Vector3d& point, double run) {
+  /// Whether a root outside the box, at x, shows that there is none inside. From the nearest place
+  /// c of the box, y = J^-1 F(c) leads to a root x* of the box up to k |c - x*|; with n pointing
+  /// out of the box at c, (c - x*) . n >= 0, while y . n < 0. Both are possible only if y runs
+  /// along the edge: |y . n| <= |y x n| k / sqrt(1 - k^2).
+  bool none_inside(const PatchBound& b, const Matrix2d& chord, double k, const Vector2d& x) const {
+    const Vector2d c = x.cwiseMax(-1.0).cwiseMin(1.0);
+    const Vector2d y =
+        chord * seen(index_.jet(b, b.box.center() + c.cwiseProduct(b.box.half())).point);
+    const std::array<double, 2> outwards = {x.x() == c.x() ? 0.0 : std::copysign(1.0, c.x()),
+                                            x.y() == c.y() ? 0.0 : std::copysign(1.0, c.y())};
+    if (outwards[0] != 0 && outwards[1] != 0) {
+      return y.x() * outwards[0] < 0 && y.y() * outwards[1] < 0;
+    }
+    const double across = outwards[0] != 0 ? y.x() * outwards[0] : y.y() * outwards[1];
+    const double along = outwards[0] != 0 ? y.y() : y.x();
+    return across < -std::abs(along) * k / std::sqrt(1 - k * k);
+  }
+
+  void add(const Vector2d& parameter, const Vector3d& point, double run, bool certain) {
     const double t = (point - ray_.origin).dot(along_) * per_length_;
     if (t < -kGeometric * per_length_ || t > most_ + kGeometric * per_length_) return;
-    found_.hits.push_back({std::max(t, 0.0), parameter, point, run});
-    if (first_only_) most_ = std::min(most_, std::max(t, 0.0));
+    found_.hits.push_back({std::max(t, 0.0), parameter, point, run, certain});
+    if (first_only_ && certain) most_ = std::min(most_, std::max(t, 0.0));
   }
 
   /// A patch that is flat to kGeometric and still not settled: the ray runs along it, or it is a
@@ -232,20 +252,26 @@ class RaySearch {
     const Vector2d x = b.flatten * (ray.origin + t.first * ray.direction).head<2>();
     const Vector2d at = b.box.center() + x.cwiseMax(-1.0).cwiseMin(1.0).cwiseProduct(b.box.half());
     const double run = (t.last - t.first) / per_length_;
-    add(at, index_.jet(b, at).point, run > 10 * kGeometric ? run : 0.0);
+    add(at, index_.jet(b, at).point, run > 10 * kGeometric ? run : 0.0, true);
   }
 
   void halve(Patch patch, const PatchBound& bound, const Passage& ray, int halvings) {
-    if (bound.frame_high.z() - bound.frame_low.z() <= kGeometric || halvings == kMostHalvings) {
+    // Flat, with even parameters: then the tangents in the middle tell all of it. A pole's cells
+    // have none and end when they are small.
+    constexpr double kEven = 1e-3;
+    const bool flat =
+        bound.frame_high.z() - bound.frame_low.z() <= 2 * kGeometric && bound.bending() <= kEven;
+    if (flat || bound.reach <= kGeometric) {
       touch(bound, ray);
       return;
     }
-    if (cells_ >= kMostCells) {
+    const int direction = wider_direction(bound);
+    if (halvings == kMostHalvings || cells_ >= kMostCells || !patch.can_halve(direction)) {
       found_.complete = false;
-      touch(bound, ray);
+      add(bound.box.center(), bound.jet.point, 0, false);
       return;
     }
-    Patch after = patch.halve(wider_direction(bound));
+    Patch after = patch.halve(direction);
     std::array<PatchBound, 2> bounds;
     std::array<Patch*, 2> patches = {&patch, &after};
     std::array<double, 2> distance{};
@@ -279,13 +305,17 @@ class RaySearch {
       for (RayHit& k : kept) {
         const double beyond = (hit.t - k.t) / per_length_ - k.run;  // of the end of its run
         const bool same_place = (k.point - hit.point).norm() < kNear;
-        // Ends of runs are known to a part of their length only.
-        if (same_place || (k.run > 0 && beyond < 0.5 * (k.run + hit.run) + kNear)) known = &k;
+        // Ends of runs are known to a part of their length only; what crosses is no part of them.
+        const double room = hit.run > 0 ? 0.5 * (k.run + hit.run) + kNear : kNear;
+        if (same_place || (k.run > 0 && beyond < room)) known = &k;
       }
       if (known == nullptr) {
         kept.push_back(hit);
       } else {
-        known->run = std::max(known->run, (hit.t - known->t) / per_length_ + hit.run);
+        if (known->run > 0 || hit.run > 0) {
+          known->run = std::max(known->run, (hit.t - known->t) / per_length_ + hit.run);
+        }
+        known->certain = known->certain && hit.certain;
       }
     }
     hits = std::move(kept);

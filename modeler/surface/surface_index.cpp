@@ -14,8 +14,6 @@ using Eigen::Vector3d;
 constexpr double kMostBending = 0.35;
 constexpr double kMostChange = 0.3;
 constexpr int kMostHalvings = 8;
-/// Positive Bernstein weights come with halving because the denominator is positive.
-constexpr int kMostHalvingsForWeights = 80;
 
 }  // namespace
 
@@ -50,16 +48,18 @@ SurfaceIndex::SurfaceIndex(BsplineSurface surface)
 
 void SurfaceIndex::add_leaves(Patch patch, int halvings) {
   int direction = halvings % 2;
-  if (patch.has_positive_weights() || halvings == kMostHalvingsForWeights) {
+  // Positive weights come with halving, because the denominator is positive.
+  if (patch.has_positive_weights()) {
     PatchBound leaf = bound(patch);
     // Points as far away as it is wide see it convex, if second derivatives stay near the middle's.
     const bool steady = 2 * leaf.reach * leaf.second_reach_off <=
                         kMostChange * leaf.least_stretch * leaf.least_stretch;
-    if ((leaf.bending() <= kMostBending && steady) || halvings >= kMostHalvings) {
+    direction = wider_direction(leaf);
+    if ((leaf.bending() <= kMostBending && steady) || halvings >= kMostHalvings ||
+        !patch.can_halve(direction)) {
       leaves_.push_back(std::move(leaf));
       return;
     }
-    direction = wider_direction(leaf);
   }
   Patch after = patch.halve(direction);
   add_leaves(std::move(patch), halvings + 1);

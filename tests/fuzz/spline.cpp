@@ -24,9 +24,13 @@ using limn::KnotVector;
 using limn::fuzz::Input;
 using limn::fuzz::require;
 
+/// Whether a number was any double's bits: then what is found need not be accurate.
+bool wild = false;
+
 /// Small decimals, which make valid splines often, or the bits of any double.
 double number(Input& input) {
   if (input.byte() % 8 != 0) return (input.byte() - 128) / 16.0;
+  wild = true;
   const auto bytes = input.take(sizeof(double));
   double bits = 0;
   if (bytes.size() == sizeof bits) std::memcpy(&bits, bytes.data(), sizeof bits);
@@ -82,17 +86,31 @@ void ask(const BsplineSurface& surface, Input& input) {
   if (!p.allFinite()) return;
   const auto closest = index.closest_point(p);
   require(!(closest.distance < 0), "a distance is 0 or more");
+  for (int d = 0; d < 2; ++d) {
+    const double u = closest.parameter[d];
+    require(u >= surface.knots(d).domain_begin() && u <= surface.knots(d).domain_end(),
+            "the parameters lie in the domain");
+  }
+  if (!wild) {
+    require(std::abs((closest.point - p).norm() - closest.distance) < 1e-6,
+            "the point is as far away as it says");
+  }
   const Eigen::Vector3d direction(number(input), number(input), number(input));
   if (!direction.allFinite() || direction.isZero(0)) return;
   (void)index.first_hit({p, direction});
   const auto hits = index.all_hits({p, direction});
-  for (const auto& hit : hits.hits) require(!(hit.t < 0), "hits lie ahead");
+  for (const auto& hit : hits.hits) {
+    require(!(hit.t < 0), "hits lie ahead");
+    if (wild || !hit.certain) continue;
+    require((p + hit.t * direction - hit.point).norm() < 1e-6, "hits lie on the ray");
+  }
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Input input(data, size);
+  wild = false;
   const std::uint8_t what = input.byte();
   const auto form = what % 2 == 0 ? limn::Form::kPolynomial : limn::Form::kRational;
   const std::size_t directions = what / 2 % 2 + 1;
@@ -121,7 +139,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } else {
     const auto curve = limn::BsplineCurve<2>::of(*std::move(spline));
     const Eigen::Vector2d p(number(input), number(input));
-    if (p.allFinite()) (void)limn::closest_on_curve(curve, p);
+    if (p.allFinite()) {
+      const auto closest = limn::closest_on_curve(curve, p);
+      require(!(closest.distance < 0), "a distance is 0 or more");
+    }
     (void)limn::cross_curves(curve, curve);
   }
   return 0;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "modeler/surface/primitives.hpp"
 #include "modeler/surface/surface_index.hpp"
 #include "tests/peers/known_surfaces.hpp"
 #include "tests/peers/random_surfaces.hpp"
@@ -227,6 +228,58 @@ TEST(Ray, ThroughAPoleHitsItOnce) {
   ASSERT_EQ(hits.hits.size(), 2U);
   EXPECT_NEAR(hits.hits[0].t, 6, kSame);
   EXPECT_NEAR(hits.hits[1].t, 12, kSame);
+}
+
+TEST(Ray, ThroughADiscNearItsPole) {
+  const SurfaceIndex disc(*make_disc(Frame(), 3));
+  for (const Vector3d& at :
+       {Vector3d(0, 0, 0), Vector3d(1e-3, 0, 0), Vector3d(2e-6, 1e-6, 0), Vector3d(-0.3, 0.4, 0)}) {
+    for (const Vector3d& direction :
+         {Vector3d(0, 0, -1), Vector3d(0.5, 0.2, -1), Vector3d(3, 1, -0.2)}) {
+      const RayHits hits = disc.all_hits({at - 2 * direction, direction});
+      ASSERT_EQ(hits.hits.size(), 1U);
+      EXPECT_NEAR(hits.hits[0].t, 2, 1e-8);
+      EXPECT_LT((hits.hits[0].point - at).norm(), 1e-7);
+    }
+  }
+}
+
+/// Flat, but with parameters that bend: what is thin need not be even.
+TEST(Ray, AtASmallAngleToAnUnevenPlane) {
+  const auto knots = *KnotVector::make_clamped(3, 0, 1);
+  std::vector<Vector3d> points;
+  for (int j = 0; j < 4; ++j) {
+    for (int i = 0; i < 4; ++i) {
+      points.emplace_back(i + 0.4 * (i % 2) * (j - 1.5), j + 0.5 * (j % 2) * (i - 1.5), 0);
+    }
+  }
+  const SurfaceIndex plane(*BsplineSurface::make({knots, knots}, points));
+  test::for_all(100, [&plane](Rng& rng) {
+    const Vector3d at = plane.evaluator().point(rng.uniform(0.1, 0.9), rng.uniform(0.1, 0.9));
+    const Vector3d direction(rng.uniform(-1, 1), rng.uniform(-1, 1), -rng.uniform(0.01, 0.2));
+    const RayHits hits = plane.all_hits({at - 3 * direction, direction});
+    ASSERT_EQ(hits.hits.size(), 1U);
+    EXPECT_NEAR(hits.hits[0].t, 3, kSame / direction.norm() * 200);
+    EXPECT_LT((hits.hits[0].point - at).norm(), 1e-7);
+    EXPECT_TRUE(hits.hits[0].certain);
+  });
+}
+
+TEST(Ray, AlongAnAxisThroughKnotLines) {
+  const auto knots = *KnotVector::make_clamped(2, 0, 7, std::array{1.0, 2.1, 3.3, 4.7, 5.1, 6.0});
+  std::vector<Vector3d> points;
+  for (int j = 0; j < 9; ++j) {
+    for (int i = 0; i < 9; ++i)
+      points.emplace_back(knots.greville(i), knots.greville(j), std::sin(i + 2 * j));
+  }
+  const SurfaceIndex sheet(*BsplineSurface::make({knots, knots}, points));
+  for (const double u : knots.breakpoints()) {
+    for (const double v : knots.breakpoints()) {
+      const auto hit = sheet.first_hit({{u, v, 5}, {0, 0, -1}});
+      ASSERT_TRUE(hit) << u << ", " << v;
+      EXPECT_LT((hit->parameter - Vector2d(u, v)).norm(), 1e-9);
+    }
+  }
 }
 
 TEST(Ray, EndsWhereItIsToldTo) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "modeler/bspline/compose.hpp"
@@ -21,7 +22,7 @@ using testing::Pointwise;
 
 template <class T>
 T must(Expected<T> made) {
-  EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().at + ": " + made.error().what);
+  if (!made) throw std::runtime_error(made.error().at + ": " + made.error().what);
   return *std::move(made);
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <vector>
 
 #include "modeler/bspline/jet.hpp"
@@ -20,7 +21,7 @@ constexpr double kPi = std::numbers::pi;
 
 template <class T>
 T must(Expected<T> made) {
-  EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().at + ": " + made.error().what);
+  if (!made) throw std::runtime_error(made.error().at + ": " + made.error().what);
   return *std::move(made);
 }
 

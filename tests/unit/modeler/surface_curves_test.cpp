@@ -91,6 +91,33 @@ TEST(CrossCurves, ThatRunTogether) {
   EXPECT_NEAR(found.crossings[0].run, 3, 1e-9);
 }
 
+TEST(CrossCurves, NearlyParallelLinesCrossInTheirMiddles) {
+  const auto found = cross_curves(line({-500, 0}, {500, 0}), line({-500, -4.5e-4}, {500, 4.5e-4}));
+  ASSERT_EQ(found.crossings.size(), 1U);
+  EXPECT_NEAR(found.crossings[0].s, 0.5, 1e-5);
+}
+
+TEST(CrossCurves, UnevenParametersOfAStraightLine) {
+  const auto uneven =
+      *BsplineCurve<2>::make(*KnotVector::make_clamped(2, 0, 1), {{0, 0}, {0.1, 0}, {1, 0}});
+  for (const auto& other : {line({0.3, -1}, {0.3, 1}), line({0.3, 0}, {0.3001, 1})}) {
+    const auto found = cross_curves(uneven, other);
+    ASSERT_EQ(found.crossings.size(), 1U);
+    EXPECT_LT((uneven.point(found.crossings[0].s) - Vector2d(0.3, 0)).norm(), 1e-8);
+  }
+}
+
+TEST(CrossCurves, ACrossingBesideAnOverlapIsItsOwn) {
+  // A polyline along the x axis for 4 mm, up, and down through it again 2 mm further.
+  const auto zigzag = *BsplineCurve<2>::make(
+      *KnotVector::make_clamped(1, 0, 3, std::array{1.0, 2.0}), {{0, 0}, {4, 0}, {6, 1}, {6, -1}});
+  const auto found = cross_curves(zigzag, line({-5, 0}, {20, 0}));
+  ASSERT_EQ(found.crossings.size(), 2U);
+  EXPECT_NEAR(found.crossings[0].run, 4, 1e-9);
+  EXPECT_NEAR(found.crossings[1].s, 2.5, 1e-12);
+  EXPECT_EQ(found.crossings[1].run, 0);
+}
+
 TEST(CrossCurves, InSpace) {
   const auto helix_like = *BsplineCurve<3>::make(*KnotVector::make_clamped(3, 0, 1),
                                                  {{0, 0, 0}, {1, 2, 1}, {2, -2, 2}, {3, 0, 3}});
