@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <future>
 #include <string>
+#include <vector>
 
 #include "tests/bench/areas.hpp"
 
@@ -51,20 +53,29 @@ Boot boot(const fs::path& script) {
 
 void boot_area(const RowSink& sink) {
   const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path() / "tests" / "kernel";
-  double seconds = 0;
-  for (const char* name : {"kernel_links", "kernel_replugs"}) {
-    const Boot done = boot(folder / (std::string(name) + ".sh"));
-    if (done.status != 0) {
+  // ./check runs its two entries side by side, an emulated processor each.
+  const char* const names[] = {"kernel_links", "kernel_replugs"};
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<std::future<Boot>> running;
+  for (const char* name : names) {
+    running.push_back(std::async(std::launch::async, boot, folder / (std::string(name) + ".sh")));
+  }
+  std::vector<Boot> done;
+  for (auto& one : running) done.push_back(one.get());
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    if (done[i].status != 0) {
       std::fprintf(stderr, "limn-bench: no figure for the first boot: %s\n",
-                   done.status == kSkipped ? done.last_line.c_str()
-                                           : (std::string(name) + " failed").c_str());
+                   done[i].status == kSkipped ? done[i].last_line.c_str()
+                                              : (std::string(names[i]) + " failed").c_str());
       return;
     }
-    sink({std::string("boot/") + name + ", wall time", done.seconds, "s", std::nullopt,
-          std::nullopt});
-    seconds += done.seconds;
   }
-  sink({"boot/first boot, wall time", seconds, "s", std::nullopt, at_most(kMostSeconds)});
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    sink({std::string("boot/") + names[i] + ", wall time", done[i].seconds, "s", std::nullopt,
+          std::nullopt});
+  }
+  sink({"boot/first boot, wall time", wall.count(), "s", std::nullopt, at_most(kMostSeconds)});
 }
 
 }  // namespace limn::bench
