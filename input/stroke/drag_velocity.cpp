@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMostDeadZone = 0.9;
 
-Expected<void> outside(std::string_view member, std::string range) {
+Expected<void> outside(std::string_view member, const std::string& range) {
   return fail(ErrorCode::kOutOfRange, std::string(member), "is outside " + range, "give one in it");
 }
 
