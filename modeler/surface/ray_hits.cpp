@@ -24,8 +24,7 @@ constexpr double kEdge = 1e-9;
 /// Components of a direction below this are none: dividing by them overflows.
 constexpr double kNoDirection = 1e-300;
 
-/// The part of the ray inside a box, first > last where there is none. The box is widened by
-/// rounding, so that what touches it is inside.
+/// The part of the ray inside a box, first > last where there is none.
 struct Interval {
   double first;
   double last;
