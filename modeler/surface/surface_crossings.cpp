@@ -1,0 +1,499 @@
+#include "modeler/surface/surface_crossings.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "input/base/expect.hpp"
+#include "modeler/base/tolerance.hpp"
+#include "modeler/surface/crossing_cell.hpp"
+#include "modeler/surface/crossing_walk.hpp"
+#include "modeler/surface/known_crossing.hpp"
+
+namespace limn {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+
+constexpr int kMostPairs = 300'000;
+constexpr std::size_t kMostTogether = 40'000;  ///< pairs of parts that run together
+constexpr std::size_t kMostPoints = 300'000;   ///< of all curves
+/// Parts that are flat to this (mm), and neither apart nor transversal, run together.
+constexpr double kFlat = 1e-7;
+
+/// The direction in which to halve a part: to flatten it, unless it is much longer the other way,
+/// which spoils the bounds of rational parts.
+int direction_to_halve(const PatchBound& bound) {
+  const Vector2d half = bound.box.half();
+  const double u = bound.jet.du.norm() * half.x();
+  const double v = bound.jet.dv.norm() * half.y();
+  constexpr double kMuchLonger = 4;
+  if (u > kMuchLonger * v) return 0;
+  if (v > kMuchLonger * u) return 1;
+  return wider_direction(bound);
+}
+
+/// The leaves of a surface and their halves, made when they are asked for.
+class Parts {
+ public:
+  explicit Parts(const SurfaceIndex& index)
+      : index_(&index), leaf_halves_(index.leaves().size(), kNone) {}
+
+  const SurfaceIndex& index() const { return *index_; }
+  /// Part i: a leaf, or what halves() said.
+  const PatchBound& bound(int i) const {
+    const int leaves = static_cast<int>(leaf_halves_.size());
+    return i < leaves ? index_->leaves()[static_cast<std::size_t>(i)] : half(i).bound;
+  }
+  /// Its halves; none where no parameter is left between its ends.
+  std::optional<std::array<int, 2>> halves(int i) {
+    const int leaves = static_cast<int>(leaf_halves_.size());
+    const bool is_leaf = i < leaves;
+    std::array<int, 2>& known =
+        is_leaf ? leaf_halves_[static_cast<std::size_t>(i)] : half(i).halves;
+    if (known != kNone) return known;
+    const int direction = direction_to_halve(bound(i));
+    Patch before = is_leaf ? index_->patch(bound(i)) : half(i).patch;
+    if (!before.can_halve(direction)) return std::nullopt;
+    Patch after = before.halve(direction);
+    const int next = leaves + static_cast<int>(halves_.size());
+    known = {next, next + 1};  // before the deque grows: references into it stay
+    for (Patch* patch : {&before, &after}) {
+      const PatchBound bound = index_->bound(*patch);
+      halves_.push_back({bound, std::move(*patch), kNone});
+    }
+    return std::array<int, 2>{next, next + 1};
+  }
+
+ private:
+  struct Half {
+    PatchBound bound;
+    Patch patch;
+    std::array<int, 2> halves;
+  };
+  static constexpr std::array<int, 2> kNone = {-1, -1};
+
+  Half& half(int i) { return halves_[static_cast<std::size_t>(i) - leaf_halves_.size()]; }
+  const Half& half(int i) const {
+    return halves_[static_cast<std::size_t>(i) - leaf_halves_.size()];
+  }
+
+  const SurfaceIndex* index_;
+  std::vector<std::array<int, 2>> leaf_halves_;
+  std::deque<Half> halves_;
+};
+
+/// Whether the box of `a` along its tangent plane is apart from that of `b`, seen along its axes.
+bool apart_along(const PatchBound& a, const PatchBound& b) {
+  const Vector3d middle =
+      b.jet.point + b.frame * (0.5 * (b.frame_low + b.frame_high)) - a.jet.point;
+  const Matrix3d turn = a.frame.transpose() * b.frame;
+  const Vector3d reach = turn.cwiseAbs() * (0.5 * (b.frame_high - b.frame_low));
+  const Vector3d local = a.frame.transpose() * middle;
+  return ((local - reach - a.frame_high).array() > kGeometric).any() ||
+         ((a.frame_low - local - reach).array() > kGeometric).any();
+}
+
+bool boxes_apart(const Vector3d& low_a, const Vector3d& high_a, const Vector3d& low_b,
+                 const Vector3d& high_b) {
+  return ((low_a - high_b).array() > kGeometric).any() ||
+         ((low_b - high_a).array() > kGeometric).any();
+}
+
+bool apart(const PatchBound& a, const PatchBound& b) {
+  return boxes_apart(a.low, a.high, b.low, b.high) || apart_along(a, b) || apart_along(b, a);
+}
+
+/// A stretch of a cell's axis.
+struct Stretch {
+  double low;
+  double high;
+  double length() const { return high - low; }
+  double middle() const { return low + 0.5 * (high - low); }
+};
+
+class CrossingSearch {
+ public:
+  CrossingSearch(const SurfaceIndex& first, const SurfaceIndex& second, double tolerance)
+      : first_(first), second_(second), tolerance_(tolerance), walk_(first, second, tolerance) {}
+
+  SurfaceCrossings run();
+
+ private:
+  /// A part of the hierarchy: an inner node, or a leaf as ~number.
+  struct Branching {
+    std::int32_t node;
+    Vector3d low;
+    Vector3d high;
+  };
+  /// A place where two parts run together.
+  struct Tangency {
+    CrossingPlace place;
+    Vector3d point;
+    double reach;
+    bool is_single;  ///< none beside it
+  };
+
+  static Branching root_of(const SurfaceIndex& index);
+  static std::array<Branching, 2> below(const SurfaceIndex& index, const Branching& at);
+  void visit_nodes(const Branching& a, const Branching& b);
+  void visit(int a, int b);
+  bool cover(const CrossingCell& cell);
+  std::vector<Stretch> uncovered(const CrossingCell& cell, const Stretch& stretch) const;
+  bool is_known(const CrossingPlace& place, const Vector3d& point) const;
+  void follow(const CrossingPlace& place, double reach);
+  bool is_seam(const KnownCrossing& one, const KnownCrossing& other) const;
+  void look_for_touch(const PatchBound& a, const PatchBound& b);
+  void add_tangency(const CrossingPlace& place, double reach, bool is_single);
+  std::vector<SurfaceTouch> touches() const;
+
+  Parts first_;
+  Parts second_;
+  double tolerance_;
+  CrossingWalk walk_;
+  std::vector<KnownCrossing> known_;
+  std::vector<std::array<int, 2>> running_together_;  ///< parts that do, or seem to
+  std::vector<Tangency> tangencies_;
+  int pairs_ = 0;
+  std::size_t points_ = 0;
+  bool complete_ = true;
+};
+
+CrossingSearch::Branching CrossingSearch::root_of(const SurfaceIndex& index) {
+  if (index.nodes().empty()) return {~0, index.leaves()[0].low, index.leaves()[0].high};
+  const auto& root = index.nodes()[0];
+  return {0, root.low[0].cwiseMin(root.low[1]), root.high[0].cwiseMax(root.high[1])};
+}
+
+std::array<CrossingSearch::Branching, 2> CrossingSearch::below(const SurfaceIndex& index,
+                                                               const Branching& at) {
+  const auto& node = index.nodes()[static_cast<std::size_t>(at.node)];
+  return {{{node.child[0], node.low[0], node.high[0]}, {node.child[1], node.low[1], node.high[1]}}};
+}
+
+void CrossingSearch::visit_nodes(const Branching& a, const Branching& b) {
+  if (boxes_apart(a.low, a.high, b.low, b.high)) return;
+  if (a.node < 0 && b.node < 0) return visit(~a.node, ~b.node);
+  const bool split_first =
+      b.node < 0 || (a.node >= 0 && (a.high - a.low).norm() >= (b.high - b.low).norm());
+  if (split_first) {
+    for (const Branching& part : below(first_.index(), a)) visit_nodes(part, b);
+  } else {
+    for (const Branching& part : below(second_.index(), b)) visit_nodes(a, part);
+  }
+}
+
+void CrossingSearch::visit(int a, int b) {
+  const PatchBound& one = first_.bound(a);
+  const PatchBound& other = second_.bound(b);
+  if (apart(one, other)) return;
+  const CrossingCell cell(first_.index(), one, second_.index(), other);
+  if (cell.is_transversal() && cover(cell)) return;
+  if (++pairs_ > kMostPairs) {
+    complete_ = false;
+    return;
+  }
+  const auto height = [](const PatchBound& bound) {
+    return bound.frame_high.z() - bound.frame_low.z();
+  };
+  const bool flat = height(one) <= kFlat;
+  const bool other_flat = height(other) <= kFlat;
+  const bool is_small = std::min(one.reach, other.reach) <= kFlat;
+  // The one that bends more.
+  const bool first = other_flat || (!flat && one.turn >= other.turn);
+  std::optional<std::array<int, 2>> halves;
+  if (!(flat && other_flat) && !is_small) halves = first ? first_.halves(a) : second_.halves(b);
+  if (!halves) {
+    if (running_together_.size() < kMostTogether) {
+      running_together_.push_back({a, b});
+    } else {
+      complete_ = false;
+    }
+    return;
+  }
+  for (const int half : *halves) first ? visit(half, b) : visit(a, half);
+}
+
+/// Finds all crossings of a transversal cell. Whatever stretch of its axis no branch covers yet is
+/// asked in its middle: there is a crossing, or there is none in all of it, or it is halved. False
+/// where that takes long: parts of the cell are easier.
+bool CrossingSearch::cover(const CrossingCell& cell) {
+  constexpr int kMostQuestions = 100;
+  constexpr double kShortest = 1e-6;
+  constexpr double kEdge = 1e-9;  // neighbours share their edges
+  std::vector<Stretch> open = {{-1, 1}};
+  int questions = 0;
+  while (!open.empty()) {
+    const Stretch next = open.back();
+    open.pop_back();
+    for (const Stretch& stretch : uncovered(cell, next)) {
+      if (stretch.length() < kShortest) continue;
+      if (++questions > kMostQuestions) return false;
+      const double c = stretch.middle();
+      Vector4d x;
+      const bool solved = cell.solve(c, x);
+      double gap = 0;
+      if (solved && x.cwiseAbs().maxCoeff() <= 1 + kEdge) {
+        follow(cell.place(x.cwiseMax(-1.0).cwiseMin(1.0)), 0);
+        gap = 0.01;  // it leads through here, whatever becomes of it
+      } else if (cell.excludes(c, 0.5 * stretch.length(),
+                               solved ? x : Vector4d(Vector4d::Zero()))) {
+        continue;
+      }
+      open.push_back({stretch.low, c - gap});
+      open.push_back({c + gap, stretch.high});
+    }
+  }
+  return true;
+}
+
+/// What of a stretch of the cell's axis no known branch passes through. Branches are polygons here:
+/// what they miss is asked for.
+std::vector<Stretch> CrossingSearch::uncovered(const CrossingCell& cell,
+                                               const Stretch& stretch) const {
+  constexpr double kRoom = 1e-7;  // along an edge
+  std::vector<Stretch> covered;
+  for (const KnownCrossing& known : known_) {
+    known.clip(cell.place(Vector4d::Constant(-1 - kRoom)),
+               cell.place(Vector4d::Constant(1 + kRoom)),
+               [&](const CrossingPlace& from, const CrossingPlace& to) {
+                 const double a = cell.local(from)[cell.axis()];
+                 const double b = cell.local(to)[cell.axis()];
+                 covered.push_back({std::min(a, b), std::max(a, b)});
+               });
+  }
+  std::sort(covered.begin(), covered.end(),
+            [](const Stretch& a, const Stretch& b) { return a.low < b.low; });
+  std::vector<Stretch> out;
+  double at = stretch.low;
+  for (const Stretch& c : covered) {
+    if (c.low > at) out.push_back({at, std::min(c.low, stretch.high)});
+    at = std::max(at, c.high);
+    if (at >= stretch.high) return out;
+  }
+  out.push_back({at, stretch.high});
+  return out;
+}
+
+bool CrossingSearch::is_known(const CrossingPlace& place, const Vector3d& point) const {
+  return std::any_of(known_.begin(), known_.end(), [&](const KnownCrossing& known) {
+    return known.any_near(point, 10 * tolerance_, [&](const CrossingSegment& segment, double x) {
+      return walk_.leads_through(segment, x, place);
+    });
+  });
+}
+
+/// The branch through a place where the surfaces meet, unless it is known; a tangency where there
+/// is none that is longer than `reach`.
+void CrossingSearch::follow(const CrossingPlace& place, double reach) {
+  if (const auto start = walk_.settled(place)) {
+    if (is_known(start->place(), start->point())) return;
+    if (points_ > kMostPoints) {
+      complete_ = false;
+      return;
+    }
+    KnownCrossing found(walk_.branch_through(*start));
+    points_ += found.branch().points.size();
+    if (found.length() > std::max(reach, 10 * kGeometric)) {
+      known_.push_back(std::move(found));
+      return;
+    }
+  }
+  add_tangency(place, reach, true);
+}
+
+void CrossingSearch::add_tangency(const CrossingPlace& place, double reach, bool is_single) {
+  tangencies_.push_back(
+      {place, first_.index().surface().point({place[0], place[1]}), reach, is_single});
+}
+
+/// Whether both are one curve in space, which runs along a seam and so has two places in a surface.
+bool CrossingSearch::is_seam(const KnownCrossing& one, const KnownCrossing& other) const {
+  if (std::abs(one.length() - other.length()) > 0.01 * one.length()) return false;
+  if (!walk_.runs_along_edge(one.branch()) || !walk_.runs_along_edge(other.branch())) return false;
+  return std::all_of(
+      one.branch().points.begin(), one.branch().points.end(), [&](const CrossingPoint& p) {
+        return other.any_near(p.point(), tolerance_, [&](const CrossingSegment& segment, double x) {
+          return (segment.at(x).head<3>() - p.point()).norm() <= 10 * tolerance_;
+        });
+      });
+}
+
+/// Two flat parts that cannot be told apart: by least squares to a place where they meet, if there
+/// is one that no branch leads through.
+void CrossingSearch::look_for_touch(const PatchBound& a, const PatchBound& b) {
+  Vector4d center;
+  Vector4d half;
+  center << a.box.center(), b.box.center();
+  half << a.box.half(), b.box.half();
+  bool passed = false;
+  for (const KnownCrossing& known : known_) {
+    known.clip(center - 2 * half, center + 2 * half, [&](auto&, auto&) { passed = true; });
+  }
+  if (passed) return;
+  CrossingPlace place = center;
+  constexpr int kMostSteps = 30;
+  constexpr double kMeets = 2 * kGeometric;
+  bool meets = false;
+  for (int step = 0; step < kMostSteps && !meets; ++step) {
+    const SurfaceJet p = first_.index().jet(a, place.head<2>());
+    const SurfaceJet q = second_.index().jet(b, place.tail<2>());
+    const Vector3d gap = q.point - p.point;
+    meets = gap.norm() <= kMeets;
+    Eigen::Matrix<double, 3, 4> m;
+    m << p.du, p.dv, -q.du, -q.dv;
+    // In mm, and so that tangent surfaces do not divide by 0.
+    const Vector4d scale = m.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+    m = m * scale.asDiagonal();
+    constexpr double kDamping = 1e-10;
+    const Eigen::Matrix4d normal =
+        m.transpose() * m + kDamping * Eigen::Matrix4d(Eigen::Matrix4d::Identity());
+    const Vector4d move = normal.partialPivLu().solve(m.transpose() * gap).cwiseProduct(scale);
+    if (!move.allFinite()) return;
+    place = (place + move).cwiseMax(center - half).cwiseMin(center + half);
+  }
+  const double reach = std::min(a.reach, b.reach);
+  constexpr double kTransversal = 1e-4;
+  if (const auto found = walk_.tangency_near(place, 2 * reach)) {
+    add_tangency(found->place, reach, found->is_single);
+  } else if (meets) {
+    walk_.sine_at(place) > kTransversal ? follow(place, reach) : add_tangency(place, reach, false);
+  }
+}
+
+/// Tangencies that are near each other are one: neighbours are found by a grid of cells that are as
+/// wide as any two may be apart.
+std::vector<SurfaceTouch> CrossingSearch::touches() const {
+  const std::size_t count = tangencies_.size();
+  double width = 20 * kGeometric;
+  for (const Tangency& t : tangencies_) width = std::max(width, 4 * t.reach + 10 * kGeometric);
+  using GridCell = std::array<std::int64_t, 3>;
+  const auto cell_of = [width](const Vector3d& p) {
+    constexpr double kMost = 1e15;
+    GridCell out{};
+    for (std::size_t d = 0; d < 3; ++d) {
+      const double x = std::floor(p[static_cast<Eigen::Index>(d)] / width);
+      out[d] = static_cast<std::int64_t>(std::clamp(x, -kMost, kMost));
+    }
+    return out;
+  };
+  std::map<GridCell, std::vector<std::size_t>> grid;
+  std::vector<std::size_t> parent(count);  // of a forest: those with the same root are one
+  const auto root = [&parent](std::size_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const Tangency& next = tangencies_[i];
+    parent[i] = i;
+    const GridCell at = cell_of(next.point);
+    for (int k = 0; k < 27; ++k) {
+      const auto found = grid.find({at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1});
+      if (found == grid.end()) continue;
+      for (const std::size_t j : found->second) {
+        if (root(i) == root(j)) continue;
+        const Tangency& other = tangencies_[j];
+        const double room = 2 * (next.reach + other.reach) + 10 * kGeometric;
+        if ((next.point - other.point).norm() <= room) parent[root(i)] = root(j);
+      }
+    }
+    grid[at].push_back(i);
+  }
+  struct Cluster {
+    const Tangency* one = nullptr;  ///< a single one, if there is
+    Vector3d low;
+    Vector3d high;
+    double reach = 0;
+  };
+  std::map<std::size_t, Cluster> clusters;  // by their roots
+  for (std::size_t i = 0; i < count; ++i) {
+    const Tangency& next = tangencies_[i];
+    Cluster& c = clusters[root(i)];
+    if (c.one == nullptr) c.low = c.high = next.point;
+    if (c.one == nullptr || next.is_single) c.one = &next;
+    c.low = c.low.cwiseMin(next.point);
+    c.high = c.high.cwiseMax(next.point);
+    c.reach = std::max(c.reach, next.reach);
+  }
+  std::vector<SurfaceTouch> out;
+  for (const auto& [first, c] : clusters) {
+    const double extent = c.one->is_single ? 0.0 : (c.high - c.low).norm() + 2 * c.reach;
+    out.push_back({c.one->point, c.one->place.head<2>(), c.one->place.tail<2>(), extent});
+  }
+  return out;
+}
+
+/// The three curves of a branch. Knots are double where segments meet, so that tangents agree, and
+/// triple at corners.
+SurfaceCrossing crossing_of(const CrossingBranch& branch) {
+  std::vector<double> knots(4, 0.0);
+  std::vector<CrossingSegment::Vector> points = {branch.points.front().at};
+  double at = 0;
+  bool at_corner = false;
+  for (std::size_t i = 0; i + 1 < branch.points.size(); ++i) {
+    const CrossingSegment segment(branch.points[i], branch.points[i + 1]);
+    // A step to a knot may be too short for one of its own.
+    if (segment.length() <= std::max(kGeometric, 1e-12 * at)) {
+      at_corner = true;
+      continue;
+    }
+    if (at > 0) {
+      knots.insert(knots.end(), at_corner ? 3 : 2, at);
+      if (at_corner) points.push_back(segment.control_points()[0]);
+    }
+    points.push_back(segment.control_points()[1]);
+    points.push_back(segment.control_points()[2]);
+    at += segment.length();
+    at_corner = false;
+  }
+  knots.insert(knots.end(), 4, at);
+  points.push_back(branch.points.back().at);
+  const auto knot_vector = KnotVector::make(3, std::move(knots));
+  LIMN_EXPECT(knot_vector.has_value());
+  std::vector<Vector3d> in_space;
+  std::vector<Vector2d> on_first;
+  std::vector<Vector2d> on_second;
+  for (const auto& p : points) {
+    in_space.push_back(p.head<3>());
+    on_first.push_back(p.segment<2>(3));
+    on_second.push_back(p.tail<2>());
+  }
+  return {*BsplineCurve<3>::make(*knot_vector, in_space),
+          *BsplineCurve<2>::make(*knot_vector, on_first),
+          *BsplineCurve<2>::make(*knot_vector, on_second), branch.deviation, branch.is_closed};
+}
+
+SurfaceCrossings CrossingSearch::run() {
+  visit_nodes(root_of(first_.index()), root_of(second_.index()));
+  for (const auto& [a, b] : running_together_) look_for_touch(first_.bound(a), second_.bound(b));
+  SurfaceCrossings out;
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    const bool repeats = std::any_of(known_.begin(), known_.begin() + std::ptrdiff_t(i),
+                                     [&](const KnownCrossing& k) { return is_seam(known_[i], k); });
+    if (!repeats) out.curves.push_back(crossing_of(known_[i].branch()));
+  }
+  out.touches = touches();
+  out.complete = complete_;
+  return out;
+}
+
+}  // namespace
+
+SurfaceCrossings cross_surfaces(const SurfaceIndex& first, const SurfaceIndex& second,
+                                double tolerance) {
+  LIMN_EXPECT(tolerance > 0);
+  return CrossingSearch(first, second, tolerance).run();
+}
+
+}  // namespace limn
