@@ -12,6 +12,8 @@
 #include "modeler/bspline/simplify.hpp"
 #include "modeler/bspline/surface_evaluator.hpp"
 #include "modeler/surface/curve_crossings.hpp"
+#include "modeler/surface/primitives.hpp"
+#include "modeler/surface/surface_crossings.hpp"
 #include "modeler/surface/surface_index.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/require.hpp"
@@ -78,6 +80,8 @@ std::vector<double> coordinates(Input& input, const std::vector<KnotVector>& kno
   return out;
 }
 
+constexpr std::size_t kMostLeaves = 60;
+
 void ask(const BsplineSurface& surface, Input& input) {
   const limn::SurfaceEvaluator evaluator(surface);
   (void)evaluator.jet(number(input), number(input));
@@ -103,6 +107,14 @@ void ask(const BsplineSurface& surface, Input& input) {
     require(!(hit.t < 0), "hits lie ahead");
     if (wild || !hit.certain) continue;
     require((p + hit.t * direction - hit.point).norm() < 1e-6, "hits lie on the ray");
+  }
+  // Of rough surfaces the search, though bounded, takes long.
+  if (index.leaves().size() > kMostLeaves) return;
+  const auto plane = limn::make_plane({p, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 8, 8);
+  if (!plane) return;
+  const auto crossings = limn::cross_surfaces(index, limn::SurfaceIndex(*plane), 1e-3);
+  for (const auto& crossing : crossings.curves) {
+    require(crossing.deviation <= 1e-3, "curves are within the tolerance");
   }
 }
 

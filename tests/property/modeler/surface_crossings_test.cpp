@@ -263,9 +263,9 @@ double distance_to(const std::vector<Vector3d>& polygon, const Vector3d& p) {
 
 constexpr int kPairs = 200;
 constexpr int kShards = 8;
-/// All of them. Open CASCADE has no branch that limn has not; the ones it misses are there by its
-/// own evaluation. It starts from a mesh of the sheets, between whose places small loops and arcs
-/// lie.
+/// All of them. Open CASCADE has no branch that limn has not. Those it misses are there by its own
+/// evaluation: loops 0.65 to 3.8 long and arcs of 0.015 to 1.3, on sheets of 10 by 10, between the
+/// places of the coarse meshes that it starts from.
 constexpr std::array<Disagreement, 9> kDisagreements = {{{30, 0, 1},
                                                          {44, 1, 1},
                                                          {65, 0, 1},
