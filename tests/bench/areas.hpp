@@ -3,12 +3,18 @@
 #include <cstddef>
 #include <functional>
 
+#include "modeler/view/sheet.hpp"
 #include "tests/bench/row.hpp"
 
 namespace limn::bench {
 
 /// Takes the rows of an area as they are measured.
 using RowSink = std::function<void(const Row&)>;
+
+struct Picture {
+  Sheet sheet;
+  Drawing drawing;
+};
 
 /// Each of these measures one area.
 void decode_area(const RowSink& sink);
@@ -21,6 +27,8 @@ void transport_area(const RowSink& sink);
 void footprint_area(const RowSink& sink);
 void fit_area(const RowSink& sink);
 void kernel_area(const RowSink& sink);
+/// Draws them, too.
+Picture growth_area(const RowSink& sink);
 void boot_area(const RowSink& sink);
 
 }  // namespace limn::bench

@@ -1,5 +1,5 @@
 // The spline kernel: evaluation, closest points, rays and knot insertion, beside Open CASCADE, SISL
-// and Embree on the same surface; accuracy and misses; how costs grow with control points.
+// and Embree on the same surface; accuracy and misses.
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@
 #include "modeler/surface/surface_index.hpp"
 #include "tests/bench/areas.hpp"
 #include "tests/bench/measure.hpp"
+#include "tests/bench/surface_questions.hpp"
 #include "tests/peers/embree_peer.hpp"
 #include "tests/peers/known_surfaces.hpp"
 #include "tests/peers/occt_peer.hpp"
@@ -66,15 +67,14 @@ class Comparison {
     parts_.push_back(part);
     return *this;
   }
-  /// One row a peer, or one without; limn's cost in the row's unit.
-  double run(const RowSink& sink) const {
+  /// One row a peer, or one without.
+  void run(const RowSink& sink) const {
     const auto seconds = measure(jobs_);
     const double cost = seconds[0] * factor_;
     if (jobs_.size() == 1) sink({row_, cost, unit_, std::nullopt, std::nullopt});
     for (std::size_t i = 1; i < jobs_.size(); ++i) {
       sink({row_, cost, unit_, Peer{seconds[i] * factor_ / parts_[i], jobs_[i].name}, goals_[i]});
     }
-    return cost;
   }
 
  private:
@@ -115,15 +115,8 @@ struct Subject {
 #endif
 };
 
-std::vector<Vector2d> random_parameters(std::size_t count, double margin) {
-  test::Rng rng(5);
-  std::vector<Vector2d> out(count);
-  for (Vector2d& at : out) at = {rng.uniform(margin, 1 - margin), rng.uniform(margin, 1 - margin)};
-  return out;
-}
-
 void random_points(const Subject& s, const RowSink& sink) {
-  const auto at = random_parameters(100'000, 0);
+  const auto at = random_places(100'000, 0);
   std::vector<SurfaceJet> jets(at.size());
   Comparison compare(name_of("point and second derivatives at random", s.n), "ns", 1e9, at.size());
   compare.limn([&] {
@@ -180,19 +173,8 @@ void grid(const Subject& s, const RowSink& sink) {
   compare.run(sink);
 }
 
-/// Points up to 5 mm above and below the sheet's middle, where each has a foot.
-std::vector<Vector3d> points_beside(const Subject& s, std::size_t count) {
-  test::Rng rng(7);
-  std::vector<Vector3d> out;
-  for (const Vector2d& at : random_parameters(count, 0.15)) {
-    const SurfaceJet jet = s.evaluator.jet(at.x(), at.y());
-    out.push_back(jet.point + rng.uniform(-5, 5) * *normal(jet));
-  }
-  return out;
-}
-
-double closest(const Subject& s, const SurfaceIndex& index, const RowSink& sink) {
-  const auto points = points_beside(s, 10'000);
+void closest(const Subject& s, const SurfaceIndex& index, const RowSink& sink) {
+  const auto points = points_beside(s.evaluator, 10'000);
   Comparison compare(name_of("closest point, global", s.n), "us", 1e6, points.size());
   compare.limn([&] {
     for (const Vector3d& p : points) keep(index.closest_point(p).distance);
@@ -219,7 +201,7 @@ double closest(const Subject& s, const SurfaceIndex& index, const RowSink& sink)
         {0.05, 3}, static_cast<double>(few) / static_cast<double>(points.size()));
   }
 #endif
-  const double cost = compare.run(sink);
+  compare.run(sink);
 #ifdef LIMN_PEER_OCCT
   // A local search of Open CASCADE's from each of many places may do no better.
   int wrong = 0;
@@ -247,7 +229,6 @@ double closest(const Subject& s, const SurfaceIndex& index, const RowSink& sink)
   sink({name_of("closest point, largest distance left open", s.n), slack, "mm", std::nullopt,
         at_most(1.001e-9)});
 #endif
-  return cost;
 }
 
 #ifdef LIMN_PEER_EMBREE
@@ -273,17 +254,10 @@ peers::EmbreeMesh embree_mesh(const Subject& s) {
 }
 #endif
 
-double rays(const Subject& s, const SurfaceIndex& index, const RowSink& sink) {
-  test::Rng rng(9);
-  const auto targets = random_parameters(10'000, 0);
-  std::vector<Ray> all;
+void rays(const Subject& s, const SurfaceIndex& index, const RowSink& sink) {
+  const std::vector<Ray> all = rays_through(s.evaluator, 10'000);
   std::vector<PeerRay> same;
-  for (const Vector2d& at : targets) {
-    const Vector3d from(rng.uniform(0, 100), rng.uniform(0, 100), 80);
-    const Vector3d to = s.evaluator.point(at.x(), at.y());
-    all.push_back({from, to - from});
-    same.push_back({peer_point(from), peer_point(to - from)});
-  }
+  for (const Ray& ray : all) same.push_back({peer_point(ray.origin), peer_point(ray.direction)});
   Comparison compare(name_of("first hit of a ray", s.n), "us", 1e6, all.size());
   compare.limn([&] {
     for (const Ray& ray : all) keep(index.first_hit(ray).has_value());
@@ -316,7 +290,7 @@ double rays(const Subject& s, const SurfaceIndex& index, const RowSink& sink) {
     for (const PeerRay& ray : same) keep(mesh.first_hit(ray));
   });
 #endif
-  const double cost = compare.run(sink);
+  compare.run(sink);
   // Each ray goes through a point of the sheet: at t = 1 at the latest it has hit.
   int missed = 0;
   double off = 0;
@@ -329,7 +303,6 @@ double rays(const Subject& s, const SurfaceIndex& index, const RowSink& sink) {
         std::nullopt, at_most(0)});
   sink({name_of("first hit, largest distance from the ray", s.n), off, "mm", std::nullopt,
         at_most(1e-9)});
-  return cost;
 }
 
 void insertion(const Subject& s, const RowSink& sink) {
@@ -349,52 +322,10 @@ void insertion(const Subject& s, const RowSink& sink) {
   compare.run(sink);
 }
 
-/// Costs with 1003^2 control points against those with 13^2: an evaluation and an edit are to cost
-/// the same, a query to grow as the tree does.
-void growth(double closest_13, double ray_13, const RowSink& sink) {
-  const Subject large(1003);
-  const Subject small(13);
-  const auto at = random_parameters(10'000, 0);
-  std::vector<SurfaceJet> jets(at.size());
-  const auto evaluate = [&](const Subject& s) {
-    return [&] {
-      s.evaluator.jets(at, jets);
-      keep(jets.data());
-    };
-  };
-  const auto jet_seconds =
-      measure({{"large", evaluate(large), {0.05, 5}}, {"small", evaluate(small), {0.05, 5}}});
-  sink({"kernel/point at random, 1003^2 against 13^2", jet_seconds[0] / jet_seconds[1], "times",
-        std::nullopt, at_most(3)});  // the caches hold the smaller one
-  const auto edit = [](const Subject& s) {
-    auto edited = std::make_shared<BsplineSurface>(s.surface);
-    const std::size_t middle = edited->control_points().size() / 2;
-    return [edited, middle] {
-      const BsplineSurface seen = *edited;  // a viewer's: the edit may not write in place
-      keep(edited->set_control_point(middle, {1, 2, 3}).has_value());
-      keep(seen.data().count());
-    };
-  };
-  const auto edit_seconds =
-      measure({{"large", edit(large), {0.05, 5}}, {"small", edit(Subject(103)), {0.05, 5}}});
-  sink({"kernel/edit of one control point, 10^6 against 10^4", edit_seconds[0] / edit_seconds[1],
-        "times", std::nullopt, at_most(2)});
-  const SurfaceIndex index(large.surface);
-  const double leaves = std::log2(1000.0 * 1000.0) / std::log2(10.0 * 10.0);
-  const double far_closest = closest(large, index, sink);
-  sink({"kernel/closest point, 1003^2 against 13^2", far_closest / closest_13, "times",
-        std::nullopt, at_most(leaves)});
-  const double far_ray = rays(large, index, sink);
-  sink({"kernel/first hit of a ray, 1003^2 against 13^2", far_ray / ray_13, "times", std::nullopt,
-        at_most(leaves)});
-}
-
 }  // namespace
 
 void kernel_area(const RowSink& sink) {
-  double closest_13 = 0;
-  double ray_13 = 0;
-  for (const int n : {13, 103}) {
+  for (const int n : {13, 103, 1003}) {
     const Subject subject(n);
     if (n == 103) {
       random_points(subject, sink);
@@ -402,14 +333,9 @@ void kernel_area(const RowSink& sink) {
       insertion(subject, sink);
     }
     const SurfaceIndex index(subject.surface);
-    const double closest_cost = closest(subject, index, sink);
-    const double ray_cost = rays(subject, index, sink);
-    if (n == 13) {
-      closest_13 = closest_cost;
-      ray_13 = ray_cost;
-    }
+    closest(subject, index, sink);
+    rays(subject, index, sink);
   }
-  growth(closest_13, ray_13, sink);
 }
 
 }  // namespace limn::bench

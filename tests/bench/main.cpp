@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "tests/bench/areas.hpp"
@@ -18,8 +21,10 @@ using limn::bench::Row;
 struct Area {
   std::string_view name;
   std::string_view what;
-  void (*run)(const limn::bench::RowSink&);
+  void (*run)(const limn::bench::RowSink&) = nullptr;
   bool when_named = false;  ///< it takes a minute: not measured unless asked for
+  /// In place of run(), where it makes a picture.
+  limn::bench::Picture (*draw)(const limn::bench::RowSink&) = nullptr;
 };
 
 constexpr Area kAreas[] = {
@@ -33,6 +38,8 @@ constexpr Area kAreas[] = {
     {"fit", "curves through strokes: time and control points", limn::bench::fit_area},
     {"kernel", "surfaces: evaluation, closest points, rays, knot insertion",
      limn::bench::kernel_area},
+    {"growth", "surfaces: how costs grow with the number of control points, with a picture",
+     nullptr, false, limn::bench::growth_area},
     {"boot", "the first boot of tests/kernel: wall time; only where it is named",
      limn::bench::boot_area, true},
 };
@@ -42,25 +49,60 @@ void list_areas() {
     std::printf("%-10s %s\n", std::string(area.name).c_str(), std::string(area.what).c_str());
 }
 
-/// Runs one area and prints its rows as they come; returns how many miss their goal.
-int run_area(const Area& area, bool as_json) {
-  int missed = 0;
+/// Whether the picture is whole in the file.
+bool write_picture(const limn::bench::Picture& from, const std::string& path) {
+  constexpr double kPixels = 1600;
+  const auto picture = path.ends_with(".png") ? limn::draw_png(from.sheet, kPixels, from.drawing)
+                                              : limn::draw_svg(from.sheet, from.drawing);
+  if (!picture) {
+    std::fprintf(stderr, "limn-bench: %s\n", picture.error().what.c_str());
+    return false;
+  }
+  const std::string part = path + ".part";
+  std::ofstream(part, std::ios::binary) << *picture;
+  std::error_code failed;
+  if (std::filesystem::file_size(part, failed) == picture->size()) {
+    std::filesystem::rename(part, path, failed);
+    if (!failed) return true;
+  }
+  std::fprintf(stderr, "limn-bench: %s can't be written; give a file in a folder that may be\n",
+               path.c_str());
+  return false;
+}
+
+/// What came of an area.
+struct Outcome {
+  int missed = 0;  ///< rows that miss their goal
+  bool drawn = true;
+};
+
+/// Runs one area and prints its rows as they come; its picture goes to `plot`, if there are both.
+Outcome run_area(const Area& area, bool as_json, const std::string& plot) {
+  Outcome outcome;
   if (!as_json) std::printf("%s\n", limn::bench::table_heading().c_str());
-  area.run([&missed, as_json](const Row& row) {
+  const limn::bench::RowSink sink = [&outcome, as_json](const Row& row) {
     const std::string line = as_json ? to_json(row) : to_table_line(row);
     std::printf("%s\n", line.c_str());
     std::fflush(stdout);
-    if (row.holds() == false) ++missed;
-  });
-  return missed;
+    if (row.holds() == false) ++outcome.missed;
+  };
+  if (area.draw == nullptr) {
+    area.run(sink);
+    return outcome;
+  }
+  const limn::bench::Picture picture = area.draw(sink);
+  if (!plot.empty()) outcome.drawn = write_picture(picture, plot);
+  return outcome;
 }
 
 constexpr const char* kHelp =
-    "usage: limn-bench [AREA...] [--format text|jsonl] [--require] [--list]\n"
+    "usage: limn-bench [AREA...] [--format text|jsonl] [--plot FILE] [--require] [--list]\n"
     "Measures limn against its goals and against other libraries in the same run. All figures are\n"
     "costs; ratio = peer / limn, so above 1 limn is better. Without AREA all are measured but\n"
     "those that say so.\n"
     "  --format  text: a table; jsonl: one object a row\n"
+    "  --plot    write the picture of the area `growth` to a file: PNG where it is named .png,\n"
+    "            else SVG\n"
     "  --require exit with 1 if a row misses its goal\n"
     "  --list    name the areas and end\n"
     "  --decode-reports COUNT  decode that many reports and end, for tools that count "
@@ -69,6 +111,7 @@ constexpr const char* kHelp =
 struct Arguments {
   std::vector<const Area*> areas;
   bool as_json = false;
+  std::string plot;
   bool require = false;
   bool list = false;
   bool help = false;
@@ -96,6 +139,9 @@ Arguments parse(const std::vector<std::string_view>& words) {
       const std::string_view format = i + 1 < words.size() ? words[++i] : "";
       result.as_json = format == "jsonl";
       if (format != "jsonl" && format != "text") result.complaint = "--format is text or jsonl";
+    } else if (word == "--plot") {
+      if (i + 1 < words.size()) result.plot = words[++i];
+      if (result.plot.empty()) result.complaint = "--plot takes a file";
     } else if (word == "--decode-reports") {
       const std::string count(i + 1 < words.size() ? words[++i] : "");
       result.decode_count = std::strtoul(count.c_str(), nullptr, 10);
@@ -135,7 +181,12 @@ int main(int argc, char** argv) {
     return 0;
   }
   int missed = 0;
-  for (const Area* area : arguments.areas) missed += run_area(*area, arguments.as_json);
+  bool drawn = true;
+  for (const Area* area : arguments.areas) {
+    const Outcome outcome = run_area(*area, arguments.as_json, arguments.plot);
+    missed += outcome.missed;
+    drawn = drawn && outcome.drawn;
+  }
   if (missed > 0) std::fprintf(stderr, "limn-bench: %d rows miss their goal\n", missed);
-  return arguments.require && missed > 0 ? 1 : 0;
+  return !drawn || (arguments.require && missed > 0) ? 1 : 0;
 }
