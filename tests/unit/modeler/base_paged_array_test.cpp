@@ -18,16 +18,42 @@ std::vector<double> ramp(std::size_t count) {
 
 constexpr std::size_t kPage = PagedArray::kPageSize;
 constexpr std::size_t kBlock = kPage * PagedArray::kPagesPerBlock;
+constexpr std::size_t kGroup = kBlock * PagedArray::kBlocksPerGroup;
 
 TEST(PagedArray, HoldsWhatItIsGiven) {
-  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, kPage - 1, kPage, kPage + 1,
-                                  kBlock, kBlock + 1, 2 * kBlock + 5}) {
+  for (const std::size_t count :
+       {std::size_t{0}, std::size_t{1}, kPage - 1, kPage, kPage + 1, kBlock, kBlock + 1,
+        2 * kBlock + 5, kGroup, kGroup + kBlock + 1}) {
     const auto values = ramp(count);
     const PagedArray array(values);
     EXPECT_EQ(array.size(), count);
     EXPECT_EQ(array.to_vector(), values);
     for (std::size_t i = 0; i < count; i += 97) EXPECT_EQ(array[i], values[i]);
   }
+}
+
+TEST(PagedArray, IsGeneratedPageByPage) {
+  std::size_t next = 0;
+  const std::size_t count = kGroup + 2 * kPage + 7;
+  const auto array = PagedArray::generate(count, [&next](std::size_t i, std::span<double> out) {
+    EXPECT_EQ(i, next);
+    next += out.size();
+    std::iota(out.begin(), out.end(), static_cast<double>(i) + 1);
+  });
+  EXPECT_EQ(next, count);
+  EXPECT_EQ(array, PagedArray(ramp(count)));
+}
+
+TEST(PagedArray, ReadsOverTheEdgesOfPages) {
+  const PagedArray array(ramp(3 * kPage + 5));
+  std::vector<double> out(2 * kPage + 2);
+  array.read(kPage - 1, out);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    ASSERT_EQ(out[i], static_cast<double>(kPage + i));
+  }
+  EXPECT_EQ(array.rest_of_page(kPage + 1).size(), kPage - 1);
+  EXPECT_EQ(array.rest_of_page(3 * kPage + 2).size(), 3U) << "the last page is short";
+  EXPECT_EQ(array.rest_of_page(3 * kPage + 2).front(), 3 * kPage + 3);
 }
 
 TEST(PagedArray, RunsGoOverTheEdgeOfAPage) {
