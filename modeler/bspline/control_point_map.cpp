@@ -186,53 +186,17 @@ ControlPointMap::ControlPointMap(int columns, int width, std::vector<int> first,
       first_(std::move(first)),
       coefficients_(std::move(coefficients)) {
   LIMN_EXPECT(coefficients_.size() == first_.size() * static_cast<std::size_t>(width_));
-}
-
-namespace {
-
-/// Layers of kLayer doubles, whose sums stay in registers.
-template <std::size_t kLayer>
-void map_small_layers(const ControlPointMap& map, const double* in, double* out) noexcept {
-  for (int r = 0; r < map.rows(); ++r, out += kLayer) {
-    const auto row = map.row(r);
-    const double* from = in + static_cast<std::size_t>(map.first(r)) * kLayer;
-    std::array<double, kLayer> sum{};
-    for (const double a : row) {
-      for (std::size_t i = 0; i < kLayer; ++i) sum[i] += a * from[i];
-      from += kLayer;
-    }
-    std::copy(sum.begin(), sum.end(), out);
-  }
-}
-
-/// out = the sum of four layers, which is what a cubic's rows need.
-void add_four(const double* a, std::size_t layer, const double* in, double* out) noexcept {
-  const double* b = in + layer;
-  const double* c = b + layer;
-  const double* d = c + layer;
-  for (std::size_t i = 0; i < layer; ++i) {
-    out[i] = a[0] * in[i] + a[1] * b[i] + a[2] * c[i] + a[3] * d[i];
-  }
-}
-
-}  // namespace
-
-void map_layers(const ControlPointMap& map, std::size_t layer, const double* in,
-                double* out) noexcept {
-  if (layer == 3) return map_small_layers<3>(map, in, out);
-  if (layer == 4) return map_small_layers<4>(map, in, out);
-  for (int r = 0; r < map.rows(); ++r, out += layer) {
-    const auto row = map.row(r);
-    const double* from = in + static_cast<std::size_t>(map.first(r)) * layer;
-    if (row.size() == 4) {
-      add_four(row.data(), layer, from, out);
-      continue;
-    }
-    for (std::size_t i = 0; i < layer; ++i) out[i] = row[0] * from[i];
-    for (std::size_t k = 1; k < row.size(); ++k) {
-      from += layer;
-      for (std::size_t i = 0; i < layer; ++i) out[i] += row[k] * from[i];
-    }
+  parts_.reserve(first_.size());
+  for (int r = 0; r < rows(); ++r) {
+    const std::span<const double> a = row(r);
+    std::size_t begin = 0;
+    std::size_t end = a.size();
+    while (end - begin > 1 && a[begin] == 0) ++begin;
+    while (end - begin > 1 && a[end - 1] == 0) --end;
+    const auto at = static_cast<std::ptrdiff_t>(begin);
+    const Part part{this->first(r) + static_cast<int>(begin), static_cast<int>(end - begin),
+                    std::ptrdiff_t{r} * width_ + at};
+    parts_.push_back(part);
   }
 }
 

@@ -33,16 +33,41 @@ class ControlPointMap {
             static_cast<std::size_t>(width_)};
   }
 
+  /// A row without the zeros that it begins and ends with: the sum over k < size of coefficients[k]
+  /// P_{first + k}.
+  struct Sum {
+    int first = 0;
+    int size = 0;
+    const double* coefficients = nullptr;
+  };
+  Sum sum(int row) const noexcept {
+    const Part& part = parts_[static_cast<std::size_t>(row)];
+    return {part.first, part.size, coefficients_.data() + part.begin};
+  }
+
  private:
+  struct Part {
+    int first;  ///< column
+    int size;
+    std::ptrdiff_t begin;  ///< in coefficients_
+  };
+
   int columns_;
   int width_;
   std::vector<int> first_;
   std::vector<double> coefficients_;
+  std::vector<Part> parts_;  ///< of each row, that Sum is of
 };
 
 /// Maps layers of `layer` doubles, one after another: out layer r = sum_k a_{r,k} in layer
-/// first(r) + k. In holds map.columns() layers, out gets map.rows(); they must not overlap.
+/// first(r) + k. In holds map.columns() layers, out gets map.rows(); they must not overlap. Gives
+/// the same bits on every processor.
 void map_layers(const ControlPointMap& map, std::size_t layer, const double* in,
+                double* out) noexcept;
+
+/// out[i] = sum_k coefficients[k] in[k][i] for i < count, the terms added in this order; the same
+/// bits on every processor. Precondition: at least one.
+void add_layers(std::span<const double> coefficients, const double* const* in, std::size_t count,
                 double* out) noexcept;
 
 /// The map that applies `inner` first, then `outer`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -27,35 +28,87 @@ Layers layers_of(const SplineData& spline, int direction) {
 }
 
 Expected<SplineData> with_direction(const SplineData& spline, int direction, KnotVector knots,
-                                    std::span<const double> coordinates) {
+                                    PagedArray coordinates) {
   std::vector<KnotVector> all(spline.knots().begin(), spline.knots().end());
   all[static_cast<std::size_t>(direction)] = std::move(knots);
-  return SplineData::make(all, spline.dimension(), spline.form(), coordinates);
+  return SplineData::make(all, spline.dimension(), spline.form(), std::move(coordinates));
+}
+
+/// Which row of the map makes a layer: a periodic direction's last ones repeat its first, which the
+/// map gives up to rounding only.
+struct Rows {
+  explicit Rows(const KnotRefinement& refinement)
+      : count(static_cast<std::size_t>(refinement.map.rows())),
+        round(count - static_cast<std::size_t>(
+                          refinement.knots.is_periodic() ? refinement.knots.degree() : 0)) {}
+  std::size_t of(std::size_t layer) const noexcept { return layer < round ? layer : layer % round; }
+
+  std::size_t count;
+  std::size_t round;
+};
+
+/// Layers of few doubles: a block of them at a time.
+PagedArray refine_blocks(const PagedArray& from, const Layers& in,
+                         const KnotRefinement& refinement) {
+  const Rows rows(refinement);
+  std::vector<double> old(in.count * in.layer);
+  std::vector<double> block(rows.count * in.layer);
+  std::size_t next = 0;  // block to make
+  return PagedArray::generate(in.blocks * block.size(), [&](std::size_t at, std::span<double> out) {
+    while (!out.empty()) {
+      if (at == next * block.size()) {
+        from.read(next++ * old.size(), old);
+        map_layers(refinement.map, in.layer, old.data(), block.data());
+        for (std::size_t i = rows.round * in.layer; i < block.size(); ++i) {
+          block[i] = block[i - rows.round * in.layer];
+        }
+      }
+      const std::size_t begin = at % block.size();
+      const std::size_t count = std::min(block.size() - begin, out.size());
+      std::copy_n(block.data() + begin, count, out.data());
+      out = out.subspan(count);
+      at += count;
+    }
+  });
+}
+
+/// Layers of many doubles: as much of one as a page has room for at a time.
+PagedArray refine_layers(const PagedArray& from, const Layers& in,
+                         const KnotRefinement& refinement) {
+  const Rows rows(refinement);
+  constexpr std::size_t kRoom = PagedArray::kPageSize + PagedArray::kPadding;
+  const auto most = static_cast<std::size_t>(refinement.map.width());
+  const auto scratch = std::make_unique_for_overwrite<double[]>(most * kRoom);
+  std::vector<const double*> terms(most);
+  return PagedArray::generate(in.blocks * rows.count * in.layer, [&](std::size_t at,
+                                                                     std::span<double> out) {
+    while (!out.empty()) {
+      const std::size_t layer = at / in.layer;
+      const std::size_t begin = at % in.layer;
+      const std::size_t count = std::min(in.layer - begin, out.size());
+      const auto sum = refinement.map.sum(static_cast<int>(rows.of(layer % rows.count)));
+      const auto size = static_cast<std::size_t>(sum.size);
+      const std::size_t first = layer / rows.count * in.count + static_cast<std::size_t>(sum.first);
+      for (std::size_t k = 0; k < size; ++k) {
+        terms[k] = from.run((first + k) * in.layer + begin, count, scratch.get() + k * kRoom);
+      }
+      add_layers({sum.coefficients, size}, terms.data(), count, out.data());
+      out = out.subspan(count);
+      at += count;
+    }
+  });
 }
 
 }  // namespace
 
 Expected<SplineData> refine(const SplineData& spline, int direction,
                             const KnotRefinement& refinement) {
-  const ControlPointMap& map = refinement.map;
-  LIMN_EXPECT(map.columns() == spline.knots(direction).basis_count());
+  LIMN_EXPECT(refinement.map.columns() == spline.knots(direction).basis_count());
   const Layers in = layers_of(spline, direction);
-  const auto rows = static_cast<std::size_t>(map.rows());
-  const std::vector<double> from = spline.coordinates().to_vector();
-  std::vector<double> to(in.blocks * rows * in.layer);
-  for (std::size_t b = 0; b < in.blocks; ++b) {
-    map_layers(map, in.layer, from.data() + b * in.count * in.layer,
-               to.data() + b * rows * in.layer);
-    if (refinement.knots.is_periodic()) {
-      // The map gives the repeated layers only up to rounding.
-      double* block = to.data() + b * rows * in.layer;
-      const auto repeated = static_cast<std::size_t>(refinement.knots.degree()) * in.layer;
-      double* last = block + rows * in.layer - repeated;
-      const double* first = block;
-      for (std::size_t i = 0; i < repeated; ++i) last[i] = first[i];
-    }
-  }
-  return with_direction(spline, direction, refinement.knots, to);
+  constexpr std::size_t kFew = 16;
+  return with_direction(spline, direction, refinement.knots,
+                        in.layer < kFew ? refine_blocks(spline.coordinates(), in, refinement)
+                                        : refine_layers(spline.coordinates(), in, refinement));
 }
 
 Expected<SplineData> insert_knots(const SplineData& spline, int direction,
@@ -111,7 +164,7 @@ Expected<SplineData> move_seam(const SplineData& spline, int direction, double u
                   to.data() + (b * in.count + layer) * in.layer);
     }
   }
-  return with_direction(*with_knot, direction, *std::move(rotated), to);
+  return with_direction(*with_knot, direction, *std::move(rotated), PagedArray(to));
 }
 
 }  // namespace limn

@@ -7,36 +7,65 @@
 
 #include "input/base/expect.hpp"
 #include "modeler/bspline/denominator.hpp"
+#include "modeler/bspline/lanes.hpp"
 
 namespace limn {
 namespace {
 
 /// Whether the layers of control points repeat as a periodic direction must. `stride` doubles apart
 /// lie neighbours of that direction, `count` of them a line.
-bool repeats_along(std::span<const double> coordinates, std::size_t stride, std::size_t count,
+bool repeats_along(const PagedArray& coordinates, std::size_t stride, std::size_t count,
                    std::size_t degree) {
   const std::size_t shift = (count - degree) * stride;
   for (std::size_t block = 0; block < coordinates.size(); block += count * stride) {
-    const double* first = coordinates.data() + block;
-    if (!std::equal(first, first + degree * stride, first + shift)) return false;
+    for (std::size_t i = block; i < block + degree * stride; ++i) {
+      if (coordinates[i] != coordinates[i + shift]) return false;
+    }
   }
   return true;
+}
+
+/// Whether a value is infinite or no number: times 0 such a one is no number, others are 0.
+LIMN_KERNEL void find_infinite(std::span<const double> values, bool& found) noexcept {
+  using bspline_detail::Lanes;
+  const Lanes zero = {0, 0, 0, 0};
+  Lanes sum = zero;
+  std::size_t i = 0;
+  for (; i + 4 <= values.size(); i += 4) {
+    Lanes x;
+    bspline_detail::load(values.data() + i, x);
+    sum += x * zero;
+  }
+  double rest = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  for (; i < values.size(); ++i) rest += values[i] * 0;
+  found = rest != 0;
+}
+
+LIMN_ON_EACH_PROCESSOR(has_infinite_in, (std::span<const double> values, bool& found),
+                       (values, found), find_infinite(values, found))
+
+bool all_finite(std::span<const double> values) noexcept {
+  bool found = false;
+  has_infinite_in(values, found);
+  return !found;
 }
 
 /// Weights below are lost where they are multiplied.
 constexpr double kLeastWeight = 1e-100;
 
+/// Coordinate `first` of the spline is the first of them.
 Expected<void> check_numbers(std::span<const double> coordinates, std::size_t width, Form form,
-                             std::size_t first_point) {
+                             std::size_t first) {
+  if (form == Form::kPolynomial && all_finite(coordinates)) return {};
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    const bool is_weight = form == Form::kRational && i % width == width - 1;
+    const std::size_t at = first + i;
+    const bool is_weight = form == Form::kRational && at % width == width - 1;
     if (is_weight && coordinates[i] != 0 && std::abs(coordinates[i]) < kLeastWeight) {
-      return fail(ErrorCode::kOutOfRange, "weight " + std::to_string(first_point + i / width),
-                  "it is nearly 0", "scale all weights up");
+      return fail(ErrorCode::kOutOfRange, "weight " + std::to_string(at / width), "it is nearly 0",
+                  "scale all weights up");
     }
     if (!std::isfinite(coordinates[i])) {
-      return fail(ErrorCode::kOutOfRange,
-                  "control point " + std::to_string(first_point + i / width),
+      return fail(ErrorCode::kOutOfRange, "control point " + std::to_string(at / width),
                   "a coordinate is not finite", "give finite coordinates");
     }
   }
@@ -47,6 +76,11 @@ Expected<void> check_numbers(std::span<const double> coordinates, std::size_t wi
 
 Expected<SplineData> SplineData::make(std::span<const KnotVector> knots, int dimension, Form form,
                                       std::span<const double> coordinates) {
+  return make(knots, dimension, form, PagedArray(coordinates));
+}
+
+Expected<SplineData> SplineData::make(std::span<const KnotVector> knots, int dimension, Form form,
+                                      PagedArray coordinates) {
   LIMN_EXPECT(!knots.empty() && knots.size() <= kMostDirections);
   LIMN_EXPECT(dimension >= 1 && dimension <= kMostDimension);
   SplineData data;
@@ -63,8 +97,10 @@ Expected<SplineData> SplineData::make(std::span<const KnotVector> knots, int dim
                     std::to_string(expected),
                 "give one control point a basis function");
   }
-  if (auto finite = check_numbers(coordinates, width, form, 0); !finite) {
-    return tl::unexpected(std::move(finite.error()));
+  for (std::size_t i = 0; i < coordinates.size(); i += PagedArray::kPageSize) {
+    if (auto finite = check_numbers(coordinates.rest_of_page(i), width, form, i); !finite) {
+      return tl::unexpected(std::move(finite.error()));
+    }
   }
   std::size_t stride = width;
   for (const KnotVector& k : knots) {
@@ -77,10 +113,10 @@ Expected<SplineData> SplineData::make(std::span<const KnotVector> knots, int dim
     }
     stride *= count;
   }
-  data.coordinates_ = PagedArray(coordinates);
+  data.coordinates_ = std::move(coordinates);
   if (form == Form::kRational) {
-    for (std::size_t i = width - 1; i < coordinates.size(); i += width) {
-      if (!(coordinates[i] > 0)) data.positive_weights_ = false;
+    for (std::size_t i = width - 1; i < data.coordinates_.size(); i += width) {
+      if (!(data.coordinates_[i] > 0)) data.positive_weights_ = false;
     }
     if (!data.positive_weights_) {
       if (auto proved = prove_positive_denominator(data); !proved) {
@@ -101,7 +137,7 @@ Expected<void> SplineData::set_control_point(std::size_t index,
                                              std::span<const double> coordinates) {
   const auto width = static_cast<std::size_t>(this->width());
   LIMN_EXPECT(index < count() && coordinates.size() == width);
-  if (auto finite = check_numbers(coordinates, width, form_, index); !finite) return finite;
+  if (auto finite = check_numbers(coordinates, width, form_, index * width); !finite) return finite;
   const bool positive = !is_rational() || coordinates.back() > 0;
   const bool prove = !(positive && positive_weights_);
   const SplineData before = prove ? *this : SplineData();

@@ -41,6 +41,9 @@ class SplineData {
   /// not be proved to be. Precondition: 1 to 3 knot vectors, a dimension from 1 to 10.
   static Expected<SplineData> make(std::span<const KnotVector> knots, int dimension, Form form,
                                    std::span<const double> coordinates);
+  /// The same of coordinates that are in pages already.
+  static Expected<SplineData> make(std::span<const KnotVector> knots, int dimension, Form form,
+                                   PagedArray coordinates);
 
   int directions() const noexcept { return directions_; }
   int dimension() const noexcept { return dimension_; }
