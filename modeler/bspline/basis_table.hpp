@@ -35,12 +35,10 @@ class BasisTable {
     double per_half = 0;  ///< 1 / h
     int first = 0;        ///< control point of function 0
   };
-  /// Number i of find_span(): its row is coefficients(i), c_{p,0}, c_{p,1}, .., c_{0,p}, padded.
+  /// Number i of find_span() - degree.
   const Span& span(int i) const noexcept { return spans_[static_cast<std::size_t>(i)]; }
-  const double* coefficients(int i) const noexcept {
-    return coefficients_.data() +
-           static_cast<std::ptrdiff_t>(i) * (knots_.degree() + 1) * padded_count_;
-  }
+  /// Of span i from i (degree + 1) padded_count() on: c_{p,0}, c_{p,1}, .., c_{0,p}, each padded.
+  const double* coefficients() const noexcept { return coefficients_.data(); }
 
  private:
   KnotVector knots_;

@@ -19,6 +19,16 @@ struct SurfaceJet {
   Eigen::Vector3d dvv = Eigen::Vector3d::Zero();
 };
 
+/// The jet at a distance of d in the parameters from what is known here: exact but for third
+/// derivatives.
+inline SurfaceJet expand(const SurfaceJet& jet, const Eigen::Vector2d& d) noexcept {
+  SurfaceJet out = jet;
+  out.du += jet.duu * d.x() + jet.duv * d.y();
+  out.dv += jet.duv * d.x() + jet.dvv * d.y();
+  out.point += (0.5 * d.x()) * (jet.du + out.du) + (0.5 * d.y()) * (jet.dv + out.dv);
+  return out;
+}
+
 /// The first fundamental form, E du^2 + 2 F du dv + G dv^2: lengths and angles on the surface.
 struct FirstForm {
   double e = 0;  ///< S_u . S_u

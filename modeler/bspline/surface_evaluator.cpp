@@ -1,6 +1,7 @@
 #include "modeler/bspline/surface_evaluator.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -50,16 +51,18 @@ LIMN_KERNEL void horner(const double* row, int degree, double t, double per_half
   }
 }
 
-template <int kOrder>
+/// kDegree is the table's, or -1 where it is not known to the compiler.
+template <int kOrder, int kDegree>
 LIMN_KERNEL void evaluate_functions_in(const BasisTable& table, int span_number, double x,
                                        Functions& out) noexcept {
-  const int degree = table.knots().degree();
+  const int degree = kDegree < 0 ? table.knots().degree() : kDegree;
   const int i = span_number - degree;
   const BasisTable::Span& span = table.span(i);
   const double t = (x - span.middle) * span.per_half;
   out.first = span.first;
-  const double* row = table.coefficients(i);
-  switch (table.padded_count()) {
+  const int padded = kDegree < 0 ? table.padded_count() : (kDegree + 4) / 4 * 4;
+  const double* row = table.coefficients() + static_cast<std::ptrdiff_t>(i) * (degree + 1) * padded;
+  switch (padded) {
     case 4:
       return horner<kOrder, 1>(row, degree, t, span.per_half, out.value);
     case 8:
@@ -72,7 +75,7 @@ LIMN_KERNEL void evaluate_functions_in(const BasisTable& table, int span_number,
 template <int kOrder>
 LIMN_KERNEL void evaluate_functions(const BasisTable& table, double u, Functions& out) noexcept {
   const double x = table.knots().clamp(u);
-  evaluate_functions_in<kOrder>(table, table.knots().find_span(x), x, out);
+  evaluate_functions_in<kOrder, -1>(table, table.knots().find_span(x), x, out);
 }
 
 LIMN_KERNEL void store(const Lanes& from, Eigen::Vector3d& to) noexcept {
@@ -104,11 +107,10 @@ struct Prepared {
 /// The jet of a surface with kWidth coordinates a control point and degree kDegree in u, from the
 /// functions of both directions.
 template <int kWidth, int kDegree>
-LIMN_KERNEL void sum_jet(const Prepared& surface, const Functions& fu, const Functions& fv,
-                         SurfaceJet& out) noexcept {
+LIMN_KERNEL void sum_jet(const Prepared& surface, int degree_v, const Functions& fu,
+                         const Functions& fv, SurfaceJet& out) noexcept {
   const PagedArray& coordinates = surface.data->coordinates();
   const auto row_length = static_cast<std::size_t>(surface.data->knots(0).basis_count());
-  const int degree_v = surface.data->knots(1).degree();
   constexpr std::size_t kRun = (kDegree + 1) * kWidth;
   double scratch[kRun + PagedArray::kPadding];
   const Lanes zero = {0, 0, 0, 0};
@@ -117,9 +119,12 @@ LIMN_KERNEL void sum_jet(const Prepared& surface, const Functions& fu, const Fun
       static_cast<std::size_t>(fv.first) * row_length + static_cast<std::size_t>(fu.first);
   for (int j = 0; j <= degree_v; ++j, first += row_length) {
     const double* p = coordinates.run(first * kWidth, kRun, scratch);
-    Lanes line0 = zero, line1 = zero, line2 = zero;
-    for (int k = 0; k <= kDegree; ++k) {
-      Lanes x;
+    Lanes x;
+    load(p, x);
+    Lanes line0 = x * fu.value[0][0];
+    Lanes line1 = x * fu.value[1][0];
+    Lanes line2 = x * fu.value[2][0];
+    for (int k = 1; k <= kDegree; ++k) {
       load(p + k * kWidth, x);
       line0 += x * fu.value[0][k];
       line1 += x * fu.value[1][k];
@@ -143,62 +148,82 @@ LIMN_KERNEL void sum_jet(const Prepared& surface, const Functions& fu, const Fun
   store(vv, out.dvv);
 }
 
-/// Jets at `count` places: found where spans is null, else of the piece of those spans.
+/// A parameter in its spans.
+struct Place {
+  std::array<int, 2> spans;
+  Eigen::Vector2d at;
+};
+
+/// Jets at `count` places.
 template <int kWidth, int kDegree>
-LIMN_KERNEL void evaluate_jets(const Prepared& surface, const int* spans, const Eigen::Vector2d* at,
-                               std::size_t count, SurfaceJet* out) noexcept {
+LIMN_KERNEL void evaluate_jets(const Prepared& surface, const Place* places, std::size_t count,
+                               SurfaceJet* out) noexcept {
   Functions fu;
   Functions fv;
-  if (spans != nullptr) {
-    for (std::size_t i = 0; i < count; ++i) {
-      evaluate_functions_in<2>(*surface.u, spans[0], at[i].x(), fu);
-      evaluate_functions_in<2>(*surface.v, spans[1], at[i].y(), fv);
-      sum_jet<kWidth, kDegree>(surface, fu, fv, out[i]);
+  const int degree_v = surface.data->knots(1).degree();
+  if constexpr (kDegree == 2 || kDegree == 3) {
+    if (degree_v == kDegree) {  // the usual case, with loops of known length
+      for (std::size_t i = 0; i < count; ++i) {
+        evaluate_functions_in<2, kDegree>(*surface.u, places[i].spans[0], places[i].at.x(), fu);
+        evaluate_functions_in<2, kDegree>(*surface.v, places[i].spans[1], places[i].at.y(), fv);
+        sum_jet<kWidth, kDegree>(surface, kDegree, fu, fv, out[i]);
+      }
+      return;
     }
-    return;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    evaluate_functions<2>(*surface.u, at[i].x(), fu);
-    evaluate_functions<2>(*surface.v, at[i].y(), fv);
-    sum_jet<kWidth, kDegree>(surface, fu, fv, out[i]);
+    evaluate_functions_in<2, kDegree>(*surface.u, places[i].spans[0], places[i].at.x(), fu);
+    evaluate_functions_in<2, -1>(*surface.v, places[i].spans[1], places[i].at.y(), fv);
+    sum_jet<kWidth, kDegree>(surface, degree_v, fu, fv, out[i]);
   }
 }
 
 template <int kWidth>
-LIMN_KERNEL void evaluate_jets_of(const Prepared& surface, const int* spans,
-                                  const Eigen::Vector2d* at, std::size_t count,
+LIMN_KERNEL void evaluate_jets_of(const Prepared& surface, const Place* places, std::size_t count,
                                   SurfaceJet* out) noexcept {
   switch (surface.data->knots(0).degree()) {
     case 0:
-      return evaluate_jets<kWidth, 0>(surface, spans, at, count, out);
+      return evaluate_jets<kWidth, 0>(surface, places, count, out);
     case 1:
-      return evaluate_jets<kWidth, 1>(surface, spans, at, count, out);
+      return evaluate_jets<kWidth, 1>(surface, places, count, out);
     case 2:
-      return evaluate_jets<kWidth, 2>(surface, spans, at, count, out);
+      return evaluate_jets<kWidth, 2>(surface, places, count, out);
     case 3:
-      return evaluate_jets<kWidth, 3>(surface, spans, at, count, out);
+      return evaluate_jets<kWidth, 3>(surface, places, count, out);
     case 4:
-      return evaluate_jets<kWidth, 4>(surface, spans, at, count, out);
+      return evaluate_jets<kWidth, 4>(surface, places, count, out);
     case 5:
-      return evaluate_jets<kWidth, 5>(surface, spans, at, count, out);
+      return evaluate_jets<kWidth, 5>(surface, places, count, out);
     case 6:
-      return evaluate_jets<kWidth, 6>(surface, spans, at, count, out);
+      return evaluate_jets<kWidth, 6>(surface, places, count, out);
     case 7:
-      return evaluate_jets<kWidth, 7>(surface, spans, at, count, out);
+      return evaluate_jets<kWidth, 7>(surface, places, count, out);
     case 8:
-      return evaluate_jets<kWidth, 8>(surface, spans, at, count, out);
+      return evaluate_jets<kWidth, 8>(surface, places, count, out);
     default:
-      return evaluate_jets<kWidth, 9>(surface, spans, at, count, out);
+      return evaluate_jets<kWidth, 9>(surface, places, count, out);
   }
 }
 
-LIMN_ON_EACH_PROCESSOR(jets_of,
-                       (const Prepared& surface, const int* spans, const Eigen::Vector2d* at,
-                        std::size_t count, SurfaceJet* out),
-                       (surface, spans, at, count, out),
-                       surface.data->is_rational()
-                           ? evaluate_jets_of<4>(surface, spans, at, count, out)
-                           : evaluate_jets_of<3>(surface, spans, at, count, out))
+LIMN_ON_EACH_PROCESSOR(
+    jets_of, (const Prepared& surface, const Place* places, std::size_t count, SurfaceJet* out),
+    (surface, places, count, out),
+    surface.data->is_rational() ? evaluate_jets_of<4>(surface, places, count, out)
+                                : evaluate_jets_of<3>(surface, places, count, out))
+
+/// Asks for the control points that the jets at a place need: what is far apart in memory is
+/// fetched while others are worked on.
+void prefetch(const BsplineSurface& surface, const Place& place) noexcept {
+  const auto row = static_cast<std::size_t>(surface.knots(0).basis_count());
+  const auto width = static_cast<std::size_t>(surface.data().width());
+  const std::array<int, 2> degree = {surface.knots(0).degree(), surface.knots(1).degree()};
+  const auto column = static_cast<std::size_t>(place.spans[0] - degree[0]);
+  const auto first = static_cast<std::size_t>(place.spans[1] - degree[1]);
+  for (std::size_t j = first; j <= static_cast<std::size_t>(place.spans[1]); ++j) {
+    const std::size_t at = (j * row + column) * width;
+    surface.data().coordinates().prefetch(at, static_cast<std::size_t>(degree[0] + 1) * width);
+  }
+}
 
 /// Where a grid's parameters meet one direction.
 using FunctionList = std::vector<Functions>;
@@ -281,62 +306,63 @@ LIMN_ON_EACH_PROCESSOR(grid_of,
                        (surface, us, vs, lists_u, lists_v, curve, out),
                        evaluate_grid(surface, us, vs, lists_u, lists_v, curve, out))
 
-/// In the order of TensorSpline::derivatives() with orders 2, 2.
-SurfaceJet jet_of(const std::array<Eigen::Vector3d, 9>& d) noexcept {
-  return {d[0], d[1], d[3], d[2], d[4], d[6]};
-}
-
-SurfaceJet jet_of_any_degree(const BsplineSurface& surface, double u, double v) noexcept {
-  std::array<Eigen::Vector3d, 9> d;
-  surface.derivatives({u, v}, {2, 2}, d);
-  return jet_of(d);
-}
-
 }  // namespace
 }  // namespace bspline_detail
 
 SurfaceEvaluator::SurfaceEvaluator(BsplineSurface surface)
     : surface_(std::move(surface)),
-      tables_{BasisTable(surface_.knots(0)), BasisTable(surface_.knots(1))} {}
+      tables_{BasisTable(surface_.knots(0)), BasisTable(surface_.knots(1))},
+      usable_(tables_[0].usable() && tables_[1].usable()) {}
 
 SurfaceJet SurfaceEvaluator::jet(double u, double v) const noexcept {
-  const Eigen::Vector2d at(u, v);
-  SurfaceJet out;
-  jets({&at, 1}, {&out, 1});
-  return out;
+  const double x = surface_.knots(0).clamp(u);
+  const double y = surface_.knots(1).clamp(v);
+  return jet_in_spans({surface_.knots(0).find_span(x), surface_.knots(1).find_span(y)}, x, y);
 }
 
 SurfaceJet SurfaceEvaluator::jet_in_spans(const std::array<int, 2>& spans, double u,
                                           double v) const noexcept {
-  const Eigen::Vector2d at(u, v);
-  if (!tables_[0].usable() || !tables_[1].usable()) {
-    constexpr std::array<int, 2> kOrders = {2, 2};
-    std::array<Eigen::Vector3d, 9> d;
-    evaluate_in_spans(surface_.data(), spans.data(), at.data(), kOrders.data(), d[0].data());
-    return bspline_detail::jet_of(d);
-  }
+  const bspline_detail::Place place{spans, {u, v}};
   SurfaceJet out;
-  bspline_detail::jets_of({&surface_.data(), &tables_[0], &tables_[1]}, spans.data(), &at, 1, &out);
-  return out;
+  if (usable_) {
+    bspline_detail::jets_of({&surface_.data(), &tables_[0], &tables_[1]}, &place, 1, &out);
+    return out;
+  }
+  constexpr std::array<int, 2> kOrders = {2, 2};
+  std::array<Eigen::Vector3d, 9> d;
+  evaluate_in_spans(surface_.data(), spans.data(), place.at.data(), kOrders.data(), d[0].data());
+  // In the order of TensorSpline::derivatives().
+  return {d[0], d[1], d[3], d[2], d[4], d[6]};
 }
 
 void SurfaceEvaluator::jets(std::span<const Eigen::Vector2d> at,
                             std::span<SurfaceJet> out) const noexcept {
   LIMN_EXPECT(at.size() == out.size());
-  if (tables_[0].usable() && tables_[1].usable()) {
-    bspline_detail::jets_of({&surface_.data(), &tables_[0], &tables_[1]}, nullptr, at.data(),
-                            at.size(), out.data());
+  if (!usable_) {
+    for (std::size_t i = 0; i < at.size(); ++i) out[i] = jet(at[i].x(), at[i].y());
     return;
   }
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    out[i] = bspline_detail::jet_of_any_degree(surface_, at[i].x(), at[i].y());
+  constexpr std::size_t kTogether = 8;
+  std::array<bspline_detail::Place, kTogether> places;
+  for (std::size_t first = 0; first < at.size(); first += kTogether) {
+    const std::size_t count = std::min(kTogether, at.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      bspline_detail::Place& place = places[i];
+      for (int d = 0; d < 2; ++d) {
+        place.at[d] = surface_.knots(d).clamp(at[first + i][d]);
+        place.spans[static_cast<std::size_t>(d)] = surface_.knots(d).find_span(place.at[d]);
+      }
+      bspline_detail::prefetch(surface_, place);
+    }
+    bspline_detail::jets_of({&surface_.data(), &tables_[0], &tables_[1]}, places.data(), count,
+                            out.data() + first);
   }
 }
 
 void SurfaceEvaluator::grid(std::span<const double> us, std::span<const double> vs,
                             std::span<SurfaceFrame> out) const {
   LIMN_EXPECT(out.size() == us.size() * vs.size());
-  if (tables_[0].usable() && tables_[1].usable()) {
+  if (usable_) {
     bspline_detail::FunctionList lists_u(us.size());
     bspline_detail::FunctionList lists_v(vs.size());
     std::vector<double> curve(8 * static_cast<std::size_t>(surface_.knots(0).basis_count()));
@@ -346,9 +372,9 @@ void SurfaceEvaluator::grid(std::span<const double> us, std::span<const double> 
   }
   for (std::size_t j = 0; j < vs.size(); ++j) {
     for (std::size_t i = 0; i < us.size(); ++i) {
-      const SurfaceJet jet = bspline_detail::jet_of_any_degree(surface_, us[i], vs[j]);
-      out[i + us.size() * j] = {jet.point, jet.du, jet.dv,
-                                normal(jet).value_or(Eigen::Vector3d::Zero())};
+      const SurfaceJet here = jet(us[i], vs[j]);
+      out[i + us.size() * j] = {here.point, here.du, here.dv,
+                                normal(here).value_or(Eigen::Vector3d::Zero())};
     }
   }
 }

@@ -53,6 +53,7 @@ class SurfaceEvaluator {
  private:
   BsplineSurface surface_;
   std::array<BasisTable, 2> tables_;
+  bool usable_;  ///< both tables
 };
 
 }  // namespace limn
