@@ -2,6 +2,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -40,7 +41,6 @@ class RaySearch {
     across_[1] = along.cross(across_[0]);
     per_length_ = 1 / length;
     along_ = along;
-    for (Eigen::Index d = 0; d < 3; ++d) inverse_[d] = 1 / ray.direction[d];
   }
 
   RayHits run() {
@@ -59,28 +59,11 @@ class RaySearch {
     std::int32_t node;
   };
 
-  Interval meet(const Vector3d& low, const Vector3d& high) const noexcept {
-    Interval out{0, most_};
-    for (Eigen::Index d = 0; d < 3; ++d) {
-      if (std::abs(ray_.direction[d]) < kNoDirection) {
-        if (ray_.origin[d] < low[d] || ray_.origin[d] > high[d]) return {1, 0};
-        continue;
-      }
-      const double a = (low[d] - ray_.origin[d]) * inverse_[d];
-      const double b = (high[d] - ray_.origin[d]) * inverse_[d];
-      const double near = a < b ? a : b;
-      const double far = a < b ? b : a;
-      out.first = near > out.first ? near : out.first;
-      out.last = far < out.last ? far : out.last;
-    }
-    const double rounding = 1e-14 * std::abs(out.last);
-    out.first -= rounding;
-    out.last += rounding;
-    return out;
-  }
-
   void visit_nodes() {
-    std::array<Waiting, 64> stack;
+    // Deeper than any tree of int32 leaves, which has up to 8 children a node.
+    constexpr std::size_t kMostDepth = 11;
+    constexpr std::size_t kWidth = BoxNode::kWidth;
+    std::array<Waiting, kWidth * kMostDepth> stack;
     std::size_t size = 0;
     stack[size++] = {0, 0};
     while (size > 0) {
@@ -90,12 +73,15 @@ class RaySearch {
         visit_leaf(~next.node);
         continue;
       }
-      const auto& node = index_.nodes()[static_cast<std::size_t>(next.node)];
-      const std::array<Interval, 2> in = {meet(node.low[0], node.high[0]),
-                                          meet(node.low[1], node.high[1])};
-      const std::size_t near = in[1].first < in[0].first ? 1 : 0;
-      for (const std::size_t side : {1 - near, near}) {
-        if (in[side].first <= in[side].last) stack[size++] = {in[side].first, node.child[side]};
+      const BoxNode& node = index_.nodes()[static_cast<std::size_t>(next.node)];
+      std::array<double, kWidth> first;
+      const std::size_t bottom = size;
+      for (unsigned met = node.passages(ray_.origin, ray_.direction, most_, first.data()); met != 0;
+           met &= met - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(met));
+        std::size_t to = size++;  // the nearest on top
+        for (; to > bottom && stack[to - 1].first < first[i]; --to) stack[to] = stack[to - 1];
+        stack[to] = {first[i], node.child[i]};
       }
     }
   }
@@ -107,7 +93,7 @@ class RaySearch {
     Interval t;
     bool misses() const { return t.first > t.last + 1e-14 * std::abs(t.last); }
   };
-  Passage pass(const SurfaceIndex::LeafBox& box) const noexcept {
+  Passage pass(const OrientedBox& box) const noexcept {
     Passage out{box.axes * (ray_.origin - box.middle), box.axes * ray_.direction, {0, most_}};
     for (Eigen::Index d = 0; d < 3; ++d) {
       const double rounding = 1e-14 * (std::abs(out.origin[d]) + box.high[d] - box.low[d]);
@@ -175,39 +161,49 @@ class RaySearch {
     return pursue(b, step, k);
   }
 
+  /// Newton's step for F in half sides of a box.
+  Vector2d newton_step(const SurfaceJet& jet, const Vector2d& half) const noexcept {
+    const Vector2d f = seen(jet.point);
+    const Matrix2d j = jacobian(jet);
+    const double per_det = 1 / (j(0, 0) * j(1, 1) - j(0, 1) * j(1, 0));
+    return {(j(0, 1) * f.y() - j(1, 1) * f.x()) * per_det / half.x(),
+            (j(1, 0) * f.x() - j(0, 0) * f.y()) * per_det / half.y()};
+  }
+
   /// Newton from the middle's step; the chord with the middle's Jacobian, which contracts, where
   /// Newton leaves.
   bool pursue(const PatchBound& b, Vector2d x, double turn) {
     const Vector2d center = b.box.center();
     const Vector2d half = b.box.half();
-    const Matrix2d chord = (jacobian(b.jet) * half.asDiagonal()).inverse();
+    // Roots outside do not count: stay near.
+    const auto stay = [&x] { x = x.cwiseMax(-1.5).cwiseMin(1.5); };
+    stay();
+    // On the second-order expansion, which costs little; its end is only where to begin.
+    const Vector2d on_expansion = x + newton_step(expand(b.jet, x.cwiseProduct(half)), half);
+    if (on_expansion.allFinite()) x = on_expansion;
     double before = std::numeric_limits<double>::infinity();
     for (int step = 0; step < kMostSteps; ++step) {
-      // Roots outside do not count: stay near.
-      x = x.cwiseMax(-1.5).cwiseMin(1.5);
-      const Vector2d at = center + x.cwiseProduct(half);
-      const SurfaceJet jet = index_.jet(b, at);
-      const Vector2d f = seen(jet.point);
-      const Matrix2d j = jacobian(jet) * half.asDiagonal();
-      const double det = j.determinant();
-      Vector2d move(j(0, 1) * f.y() - j(1, 1) * f.x(), j(1, 0) * f.x() - j(0, 0) * f.y());
-      move /= det;
+      stay();
+      const SurfaceJet jet = index_.jet(b, center + x.cwiseProduct(half));
+      Vector2d move = newton_step(jet, half);
       const double size = move.cwiseAbs().maxCoeff();
       const bool by_newton = size < 2 * before;
       if (!by_newton) {
-        move = -chord * f;
+        move = -(jacobian(b.jet) * half.asDiagonal()).inverse() * seen(jet.point);
         if (!(move.cwiseAbs().maxCoeff() < 4)) return false;
       }
       before = size;
-      x += move;
-      constexpr double kLastStep = 1e-8;  // of Newton's: squared it is below rounding
-      if (by_newton && move.cwiseAbs().maxCoeff() < kLastStep) {
-        if (x.cwiseAbs().maxCoeff() > 1 + kEdge) return none_inside(b, chord, turn, x);
-        x = x.cwiseMax(-1.0).cwiseMin(1.0);
-        const Vector2d end = center + x.cwiseProduct(half);
-        add(end, index_.jet(b, end).point, 0, true);
+      // Of Newton's: squared it is below rounding, and third derivatives do not count.
+      constexpr double kLastStep = 1e-7;
+      if (by_newton && size < kLastStep) {
+        const Vector2d end = x + move;
+        if (end.cwiseAbs().maxCoeff() > 1 + kEdge) return none_inside(b, turn, end);
+        const Vector2d inside = end.cwiseMax(-1.0).cwiseMin(1.0);
+        add(center + inside.cwiseProduct(half), expand(jet, (inside - x).cwiseProduct(half)).point,
+            0, true);
         return true;
       }
+      x += move;
     }
     return false;
   }
@@ -216,7 +212,8 @@ class RaySearch {
   /// c of the box, y = J^-1 F(c) leads to a root x* of the box up to k |c - x*|; with n pointing
   /// out of the box at c, (c - x*) . n >= 0, while y . n < 0. Both are possible only if y runs
   /// along the edge: |y . n| <= |y x n| k / sqrt(1 - k^2).
-  bool none_inside(const PatchBound& b, const Matrix2d& chord, double k, const Vector2d& x) const {
+  bool none_inside(const PatchBound& b, double k, const Vector2d& x) const {
+    const Matrix2d chord = (jacobian(b.jet) * b.box.half().asDiagonal()).inverse();
     const Vector2d c = x.cwiseMax(-1.0).cwiseMin(1.0);
     const Vector2d y =
         chord * seen(index_.jet(b, b.box.center() + c.cwiseProduct(b.box.half())).point);
@@ -291,6 +288,7 @@ class RaySearch {
   /// go on from patch to patch.
   void finish() {
     auto& hits = found_.hits;
+    if (hits.size() < 2) return;
     std::sort(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
       if (a.t != b.t) return a.t < b.t;
       if (a.run != b.run) return a.run < b.run;
@@ -326,7 +324,6 @@ class RaySearch {
   double most_;
   Vector3d along_;
   std::array<Vector3d, 2> across_;
-  Vector3d inverse_;
   double per_length_ = 1;
   RayHits found_;
   int cells_ = 0;

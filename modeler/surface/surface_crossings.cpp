@@ -134,8 +134,7 @@ class CrossingSearch {
   /// A part of the hierarchy: an inner node, or a leaf as ~number.
   struct Branching {
     std::int32_t node;
-    Vector3d low;
-    Vector3d high;
+    Eigen::AlignedBox<double, 3> box;
   };
   /// A place where two parts run together.
   struct Tangency {
@@ -146,7 +145,7 @@ class CrossingSearch {
   };
 
   static Branching root_of(const SurfaceIndex& index);
-  static std::array<Branching, 2> below(const SurfaceIndex& index, const Branching& at);
+  static std::vector<Branching> below(const SurfaceIndex& index, const Branching& at);
   void visit_nodes(const Branching& a, const Branching& b);
   void visit(int a, int b);
   bool cover(const CrossingCell& cell);
@@ -171,22 +170,27 @@ class CrossingSearch {
 };
 
 CrossingSearch::Branching CrossingSearch::root_of(const SurfaceIndex& index) {
-  if (index.nodes().empty()) return {~0, index.leaves()[0].low, index.leaves()[0].high};
-  const auto& root = index.nodes()[0];
-  return {0, root.low[0].cwiseMin(root.low[1]), root.high[0].cwiseMax(root.high[1])};
+  if (index.nodes().empty()) return {~0, {index.leaves()[0].low, index.leaves()[0].high}};
+  Branching root{0, {}};
+  for (const Branching& part : below(index, root)) root.box.extend(part.box);
+  return root;
 }
 
-std::array<CrossingSearch::Branching, 2> CrossingSearch::below(const SurfaceIndex& index,
-                                                               const Branching& at) {
-  const auto& node = index.nodes()[static_cast<std::size_t>(at.node)];
-  return {{{node.child[0], node.low[0], node.high[0]}, {node.child[1], node.low[1], node.high[1]}}};
+std::vector<CrossingSearch::Branching> CrossingSearch::below(const SurfaceIndex& index,
+                                                             const Branching& at) {
+  const BoxNode& node = index.nodes()[static_cast<std::size_t>(at.node)];
+  std::vector<Branching> out;
+  for (std::size_t i = 0; i < BoxNode::kWidth; ++i) {
+    if (node.has_child(i)) out.push_back({node.child[i], node.child_box(i)});
+  }
+  return out;
 }
 
 void CrossingSearch::visit_nodes(const Branching& a, const Branching& b) {
-  if (boxes_apart(a.low, a.high, b.low, b.high)) return;
+  if (boxes_apart(a.box.min(), a.box.max(), b.box.min(), b.box.max())) return;
   if (a.node < 0 && b.node < 0) return visit(~a.node, ~b.node);
   const bool split_first =
-      b.node < 0 || (a.node >= 0 && (a.high - a.low).norm() >= (b.high - b.low).norm());
+      b.node < 0 || (a.node >= 0 && a.box.diagonal().norm() >= b.box.diagonal().norm());
   if (split_first) {
     for (const Branching& part : below(first_.index(), a)) visit_nodes(part, b);
   } else {

@@ -2,18 +2,31 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 
 namespace limn {
 namespace {
 
-using Eigen::Vector3d;
-
 /// Leaves bend less, unless they were halved as often as is worth it: near a pole nothing helps.
 constexpr double kMostBending = 0.35;
-constexpr double kMostChange = 0.3;
+constexpr double kMostChange = 0.6;
 constexpr int kMostHalvings = 8;
+
+/// Item i becomes what item order[i] was.
+void put_in_order(std::vector<std::int32_t>& order, std::vector<PatchBound>& items) {
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (order[i] < 0) continue;
+    PatchBound first = std::move(items[i]);
+    std::size_t to = i;
+    for (;;) {  // round the cycle that i is in
+      const auto from = static_cast<std::size_t>(std::exchange(order[to], -1));
+      if (from == i) break;
+      items[to] = std::move(items[from]);
+      to = from;
+    }
+    items[to] = std::move(first);
+  }
+}
 
 }  // namespace
 
@@ -35,15 +48,15 @@ SurfaceIndex::SurfaceIndex(BsplineSurface surface)
   for (const int v : grid_.spans(1)) {
     for (const int u : grid_.spans(0)) add_leaves(grid_.patch({u, v}), 0);
   }
-  boxes_.reserve(leaves_.size());
-  for (const PatchBound& leaf : leaves_) {
-    boxes_.push_back({leaf.jet.point, leaf.frame.transpose(), leaf.frame_low, leaf.frame_high});
-  }
-  if (leaves_.size() < 2) return;
-  std::vector<std::int32_t> order(leaves_.size());
-  std::iota(order.begin(), order.end(), 0);
-  nodes_.reserve(leaves_.size());
-  add_nodes(order, 0, order.size());
+  const auto box_of = [](const PatchBound& leaf) -> OrientedBox {
+    return {leaf.jet.point, leaf.frame.transpose(), leaf.frame_low, leaf.frame_high};
+  };
+  boxes_.resize(leaves_.size());
+  std::transform(leaves_.begin(), leaves_.end(), boxes_.begin(), box_of);
+  std::vector<std::int32_t> order;
+  nodes_ = make_box_tree(boxes_, order);
+  put_in_order(order, leaves_);
+  std::transform(leaves_.begin(), leaves_.end(), boxes_.begin(), box_of);
 }
 
 void SurfaceIndex::add_leaves(Patch patch, int halvings) {
@@ -64,51 +77,6 @@ void SurfaceIndex::add_leaves(Patch patch, int halvings) {
   Patch after = patch.halve(direction);
   add_leaves(std::move(patch), halvings + 1);
   add_leaves(std::move(after), halvings + 1);
-}
-
-std::int32_t SurfaceIndex::add_nodes(std::vector<std::int32_t>& order, std::size_t begin,
-                                     std::size_t end) {
-  if (end - begin == 1) return ~order[begin];
-  const auto middle_of = [this](std::int32_t i) {
-    const PatchBound& bound = leaves_[static_cast<std::size_t>(i)];
-    const Vector3d middle = bound.low + bound.high;  // twice; an overflow may sort anywhere
-    return middle.allFinite() ? middle : Vector3d(Vector3d::Zero());
-  };
-  Vector3d low = middle_of(order[begin]);
-  Vector3d high = low;
-  for (std::size_t i = begin; i < end; ++i) {
-    low = low.cwiseMin(middle_of(order[i]));
-    high = high.cwiseMax(middle_of(order[i]));
-  }
-  Eigen::Index axis = 0;
-  (high - low).maxCoeff(&axis);
-  const std::size_t middle = begin + (end - begin) / 2;
-  const auto at = [&order](std::size_t i) {
-    return order.begin() + static_cast<std::ptrdiff_t>(i);
-  };
-  std::nth_element(at(begin), at(middle), at(end), [&](std::int32_t a, std::int32_t b) {
-    const double x = middle_of(a)[axis];
-    const double y = middle_of(b)[axis];
-    return x < y || (x == y && a < b);  // a total order, so that every run gives the same tree
-  });
-  const auto number = nodes_.size();
-  nodes_.emplace_back();
-  const std::array<std::size_t, 3> edge = {begin, middle, end};
-  for (std::size_t side = 0; side < 2; ++side) {
-    const std::int32_t child = add_nodes(order, edge[side], edge[side + 1]);
-    Node& node = nodes_[number];
-    node.child[side] = child;
-    if (child < 0) {
-      const PatchBound& bound = leaves_[static_cast<std::size_t>(~child)];
-      node.low[side] = bound.low;
-      node.high[side] = bound.high;
-    } else {
-      const Node& below = nodes_[static_cast<std::size_t>(child)];
-      node.low[side] = below.low[0].cwiseMin(below.low[1]);
-      node.high[side] = below.high[0].cwiseMax(below.high[1]);
-    }
-  }
-  return static_cast<std::int32_t>(number);
 }
 
 Patch SurfaceIndex::patch(const PatchBound& leaf) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "modeler/bspline/surface_evaluator.hpp"
+#include "modeler/surface/box_tree.hpp"
 #include "modeler/surface/patch.hpp"
 
 namespace limn {
@@ -73,24 +74,12 @@ class SurfaceIndex {
   std::optional<RayHit> first_hit(const Ray& ray) const;
   RayHits all_hits(const Ray& ray) const;
 
-  /// Inner nodes: the boxes of two children each. A child below 0 is leaf ~child.
-  struct Node {
-    std::array<Eigen::Vector3d, 2> low;
-    std::array<Eigen::Vector3d, 2> high;
-    std::array<std::int32_t, 2> child;
-  };
   /// A leaf's box along its tangent plane: what most visits of a leaf end with.
-  struct LeafBox {
-    Eigen::Vector3d middle;
-    Eigen::Matrix3d axes;  ///< rows
-    Eigen::Vector3d low;   ///< of axes (S - middle)
-    Eigen::Vector3d high;
-  };
-  const std::vector<LeafBox>& boxes() const noexcept { return boxes_; }
-  /// Parts of one span of each direction.
+  const std::vector<OrientedBox>& boxes() const noexcept { return boxes_; }
+  /// Parts of one span of each direction, neighbours mostly near each other.
   const std::vector<PatchBound>& leaves() const noexcept { return leaves_; }
-  /// The root is first; empty where there is one leaf only.
-  const std::vector<Node>& nodes() const noexcept { return nodes_; }
+  /// The hierarchy of the leaves' boxes. The root is first; empty where there is one leaf only.
+  const std::vector<BoxNode>& nodes() const noexcept { return nodes_; }
   /// The Bézier form of a leaf.
   Patch patch(const PatchBound& leaf) const;
   /// The jet of the polynomial piece that a leaf, or a part of it, is of: at a knot line the limit
@@ -106,13 +95,12 @@ class SurfaceIndex {
 
  private:
   void add_leaves(Patch patch, int halvings);
-  std::int32_t add_nodes(std::vector<std::int32_t>& order, std::size_t begin, std::size_t end);
 
   SurfaceEvaluator evaluator_;
   PatchGrid grid_;
   std::vector<PatchBound> leaves_;
-  std::vector<LeafBox> boxes_;  ///< of each leaf
-  std::vector<Node> nodes_;
+  std::vector<OrientedBox> boxes_;  ///< of each leaf
+  std::vector<BoxNode> nodes_;
 };
 
 /// The direction in which halving a patch flattens it more.

@@ -5,7 +5,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -72,6 +74,51 @@ TEST(SurfaceIndexLaw, BoundsHold) {
         within(jet.dvv, b.jet.dvv, b.along.dvv, b.off.dvv);
       }
     }
+  });
+}
+
+/// Whatever lies in a leaf lies in the boxes of all nodes over it, as queries see them.
+TEST(SurfaceIndexLaw, BoxesHoldTheLeavesBelow) {
+  test::for_all(10, [](Rng& rng) {
+    const SurfaceIndex index(any_surface(rng));
+    std::vector<int> seen(index.leaves().size());
+    struct Step {
+      const BoxNode* node;
+      std::size_t child;
+    };
+    const auto check = [&](const std::vector<Step>& way, const PatchBound& leaf) {
+      const Vector2d at(rng.uniform(leaf.box.low.x(), leaf.box.high.x()),
+                        rng.uniform(leaf.box.low.y(), leaf.box.high.y()));
+      const Vector3d x = index.jet(leaf, at).point;
+      const Vector3d p = any_point(rng, 8);
+      const double room = 1e-9;
+      for (const Step& step : way) {
+        EXPECT_LE(step.node->child_box(step.child).exteriorDistance(x), room);
+        std::array<double, BoxNode::kWidth> square;
+        std::array<double, BoxNode::kWidth> first;
+        const double most = (x - p).squaredNorm() + room;
+        EXPECT_TRUE(step.node->square_distances(p, most, square.data()) >> step.child & 1U);
+        EXPECT_LT(square[step.child], most);
+        EXPECT_TRUE(step.node->passages(p, x - p, 1, first.data()) >> step.child & 1U);
+        EXPECT_LE(first[step.child], 1);
+      }
+    };
+    const auto visit = [&](const auto& self, std::vector<Step>& way, std::int32_t number) -> void {
+      if (number < 0) {
+        ++seen[static_cast<std::size_t>(~number)];
+        return check(way, index.leaves()[static_cast<std::size_t>(~number)]);
+      }
+      const BoxNode& node = index.nodes()[static_cast<std::size_t>(number)];
+      for (std::size_t i = 0; i < BoxNode::kWidth; ++i) {
+        if (!node.has_child(i)) continue;
+        way.push_back({&node, i});
+        self(self, way, node.child[i]);
+        way.pop_back();
+      }
+    };
+    std::vector<Step> way;
+    visit(visit, way, index.nodes().empty() ? ~0 : 0);
+    EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int times) { return times == 1; }));
   });
 }
 
