@@ -108,8 +108,9 @@ Expected<std::unique_ptr<TraceReader>> open_import(std::unique_ptr<ByteSource> b
 }
 
 Expected<std::unique_ptr<TraceReader>> open_import(const std::string& path, TraceOptions options) {
-  return open_bytes(path).and_then(
-      [&options](auto bytes) { return open_import(std::move(bytes), std::move(options)); });
+  auto bytes = open_bytes(path);
+  if (!bytes) return tl::unexpected(std::move(bytes.error()));
+  return open_import(*std::move(bytes), std::move(options));
 }
 
 }  // namespace limn
