@@ -87,8 +87,8 @@ std::shared_ptr<const KnotVector::Table> KnotVector::make_table(int degree,
 }
 
 KnotVector::KnotVector() {
-  static const std::shared_ptr<const Table> constant = make_table(0, {0.0, 1.0});
-  table_ = constant;
+  static const std::shared_ptr<const Table> kConstant = make_table(0, {0.0, 1.0});
+  table_ = kConstant;
 }
 
 Expected<KnotVector> KnotVector::make(int degree, std::vector<double> values, Closure closure) {

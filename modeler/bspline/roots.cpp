@@ -62,6 +62,7 @@ class RootFinder {
       }
     }
     std::vector<double> roots;
+    roots.reserve(merged.size());
     for (const Interval& root : merged) roots.push_back(root.low + 0.5 * (root.high - root.low));
     return roots;
   }

@@ -157,7 +157,7 @@ BsplineCurve<2> curve_from_json(Checker& check, const Json& stroke, const std::s
   auto knots =
       KnotVector::make(degree, std::move(values), closed ? Closure::kPeriodic : Closure::kOpen);
   if (!knots) return invalid(std::move(knots.error()));
-  auto curve = BsplineCurve<2>::make(*std::move(knots), std::move(points));
+  auto curve = BsplineCurve<2>::make(*std::move(knots), points);
   if (!curve) return invalid(std::move(curve.error()));
   return *std::move(curve);
 }

@@ -111,7 +111,7 @@ BsplineCurve<2> clamped(const BsplineCurve<2>& curve) {
     points[i] = blossom(curve, span, std::span(t).subspan(i + 1, p));
   }
   if (knots.is_periodic()) points.back() = points.front();
-  auto out = BsplineCurve<2>::make(*std::move(made), std::move(points));
+  auto out = BsplineCurve<2>::make(*std::move(made), points);
   LIMN_EXPECT(out.has_value());  // finite points on finite knots, one a basis function
   return *std::move(out);
 }

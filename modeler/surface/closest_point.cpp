@@ -64,7 +64,7 @@ double part_of(const Vector2d& distance, const Vector2d& half) noexcept {
 /// which a step of Newton's that is cut off at the box need not do.
 Vector2d least_step(const Objective& f, const Vector2d& low, const Vector2d& high) noexcept {
   const double per_det = 1 / f.determinant();
-  const Vector2d free((f.uv * f.gradient.y() - f.vv * f.gradient.x()) * per_det,
+  Vector2d free((f.uv * f.gradient.y() - f.vv * f.gradient.x()) * per_det,
                       (f.uv * f.gradient.x() - f.uu * f.gradient.y()) * per_det);
   if (contains({low, high}, free)) return free;
   const auto value = [&f](const Vector2d& d) {

@@ -115,9 +115,9 @@ std::vector<PlotTick> round_ticks(double low, double high, int most) {
       const double first = std::ceil(low / step);
       const double last = std::floor(high / step);
       if (last - first + 1 > most) continue;
-      for (double count = first; count <= last; ++count) {
+      for (int i = 0; first + i <= last; ++i) {
         std::array<char, 64> text;
-        const double value = value_of(count) + 0.0;  // no -0
+        const double value = value_of(first + i) + 0.0;  // no -0
         const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
                                        std::chars_format::fixed, std::max(0, -power));
         ticks.push_back({value, std::string(text.data(), end.ptr)});
