@@ -12,6 +12,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
+/// Of derivatives in a box: what makes determinants of parallel planes differ from 0.
+constexpr double kRounding = 1e-14;
+
 Matrix3d without(const Eigen::Matrix<double, 3, 4>& m, int column) {
   Matrix3d out;
   for (int i = 0; i < 3; ++i) out.col(i) = m.col(i < column ? i : i + 1);
@@ -35,7 +38,9 @@ CrossingCell::CrossingCell(const SurfaceIndex& first, const PatchBound& a,
     }
   }
   const double inverse = largest > 0 ? without(m, axis_).inverse().norm() : 0.0;
-  contraction_ = inverse > 0 ? inverse * turn_ : std::numeric_limits<double>::infinity();
+  rounding_ = kRounding * (m.norm() + a.jet.point.norm() + b.jet.point.norm());
+  contraction_ =
+      inverse > 0 ? inverse * (turn_ + rounding_) : std::numeric_limits<double>::infinity();
   const auto bends = [](const PatchBound& p) {
     return std::hypot(p.second_along + p.second_reach_along, p.second_off + p.second_reach_off);
   };
@@ -103,6 +108,7 @@ bool CrossingCell::excludes(double c, double reach, const Vector4d& x) const {
     const double root = std::sqrt(discriminant);
     if (error < (half_linear + root) / k) error = std::min(error, (half_linear - root) / k);
   }
+  error += inverse.norm() * rounding_;
   if (!std::isfinite(error)) return false;
   for (int i = 0; i < 3; ++i) {
     const double y = r[i < axis_ ? i : i + 1] + move[i];

@@ -57,6 +57,7 @@ class CrossingCell {
   int axis_ = 0;
   double contraction_;
   double turn_;         ///< T
+  double rounding_;     ///< of G and of its derivatives
   double most_second_;  ///< of the second derivatives, in the same norm
 };
 

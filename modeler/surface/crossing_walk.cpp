@@ -29,6 +29,8 @@ constexpr double kLeastSine = 1e-7;
 constexpr double kMostTurn = 0.9;  ///< cosine of the angle that a segment may turn by
 /// Rates across a wall below this (rad) are those of a curve that runs along it.
 constexpr double kAlong = 1e-9;
+/// Parameters nearer to an edge than this part of the domain are on it.
+constexpr double kOnEdge = 1e-9;
 
 /// The rates of both parameters with which a point moves along a tangent.
 Vector2d rates_along(const SurfaceJet& jet, const Vector3d& tangent) {
@@ -131,18 +133,19 @@ double CrossingWalk::sine_at(const CrossingPlace& place) const {
   return n1 && n2 ? n1->cross(*n2).norm() : 0.0;
 }
 
-bool CrossingWalk::runs_along_edge(const CrossingBranch& branch) const {
-  for (std::size_t k = 0; k < 4; ++k) {
-    const auto& walls = directions_[k].walls;
-    for (const double end : {walls.front(), walls.back()}) {
-      const double room = 1e-9 * (walls.back() - walls.front());
+std::optional<CrossingWalk::Edge> CrossingWalk::edge_along(const CrossingBranch& branch) const {
+  for (int k = 0; k < 4; ++k) {
+    const auto& walls = directions_[static_cast<std::size_t>(k)].walls;
+    const double room = kOnEdge * (walls.back() - walls.front());
+    for (const bool upper : {false, true}) {
+      const double end = upper ? walls.back() : walls.front();
       const auto there = [&](const CrossingPoint& p) {
-        return std::abs(p.at[3 + static_cast<Eigen::Index>(k)] - end) <= room;
+        return std::abs(p.at[3 + k] - end) <= room;
       };
-      if (std::all_of(branch.points.begin(), branch.points.end(), there)) return true;
+      if (std::all_of(branch.points.begin(), branch.points.end(), there)) return Edge{k, upper};
     }
   }
-  return false;
+  return std::nullopt;
 }
 
 /// Newton's iteration on S_1 = S_2 in a slice.
@@ -198,7 +201,7 @@ CrossingPlace CrossingWalk::margins(const CrossingPlace& place, const Pieces& pi
   CrossingPlace out;
   for (std::size_t k = 0; k < 4; ++k) {
     const auto& walls = directions_[k].walls;
-    const double most = 1e-9 * (walls[pieces[k] + 1] - walls[pieces[k]]);
+    const double most = kOnEdge * (walls[pieces[k] + 1] - walls[pieces[k]]);
     const auto at = static_cast<Eigen::Index>(k);
     out[at] = std::min(most, kGeometric / per_unit[at]);
   }
@@ -279,8 +282,11 @@ double CrossingWalk::deviation_of(const CrossingSegment& segment, const Pieces& 
   for (const double x : {0.25, 0.5, 0.75}) {
     const CrossingSegment::Vector at = segment.at(x);
     const Pair pair = jets(at.tail<4>(), pieces);
-    out = std::max(
-        {out, (pair.first.point - at.head<3>()).norm(), (pair.second.point - at.head<3>()).norm()});
+    for (const SurfaceJet* jet : {&pair.first, &pair.second}) {
+      const double off = (jet->point - at.head<3>()).norm();
+      if (!std::isfinite(off)) return std::numeric_limits<double>::infinity();
+      out = std::max(out, off);
+    }
   }
   return out;
 }
@@ -333,6 +339,7 @@ bool CrossingWalk::pass_walls(std::vector<CrossingPoint>& points, Pieces& pieces
     pieces[k] += upper ? 1 : std::size_t(-1);
     auto next = point_at(place, pieces);
     if (!next) return false;
+    if ((next->point() - here.point()).norm() > kLeastStep) return false;  // a break
     if ((next->rate[3 + through] > 0) != upper) next = turned(*next);
     constexpr double kSameRate = 1e-9;
     if ((next->rate - here.rate).norm() > kSameRate * here.rate.norm()) points.push_back(*next);

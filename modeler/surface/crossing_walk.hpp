@@ -76,8 +76,13 @@ class CrossingWalk {
   /// Whether the curve near `x` of a segment of a branch leads through this place.
   bool leads_through(const CrossingSegment& segment, double x, const CrossingPlace& place) const;
 
-  /// Whether all points have one parameter at the same end of its domain.
-  bool runs_along_edge(const CrossingBranch& branch) const;
+  /// An end of the domain of one of the four parameters.
+  struct Edge {
+    int parameter;
+    bool upper;
+  };
+  /// The edge along which all of a branch runs.
+  std::optional<Edge> edge_along(const CrossingBranch& branch) const;
 
   /// The sine of the angle between both surfaces there, 0 where one has no normal.
   double sine_at(const CrossingPlace& place) const;

@@ -31,6 +31,8 @@ constexpr std::size_t kMostTogether = 40'000;  ///< pairs of parts that run toge
 constexpr std::size_t kMostPoints = 300'000;   ///< of all curves
 /// Parts that are flat to this (mm), and neither apart nor transversal, run together.
 constexpr double kFlat = 1e-7;
+/// Shorter curves are places; what is nearer to a curve is on it. mm
+constexpr double kNear = 10 * kGeometric;
 
 /// The direction in which to halve a part: to flatten it, unless it is much longer the other way,
 /// which spoils the bounds of rational parts.
@@ -213,11 +215,20 @@ void CrossingSearch::visit(int a, int b) {
   };
   const bool flat = height(one) <= kFlat;
   const bool other_flat = height(other) <= kFlat;
+  // Flat parts may cross, and only their parameters turn: then they are halved on. Tangent planes
+  // of parts that run together differ by no more than the parts bend.
+  constexpr double kBends = 8;          // how a parabola's slope goes with its height
+  constexpr double kLeastAngle = 1e-9;  // rad
+  const double sine = one.frame.col(2).cross(other.frame.col(2)).norm();
+  const double bends = kBends * (height(one) + height(other)) / std::min(one.reach, other.reach);
+  const bool together = flat && other_flat && !(sine > bends + kLeastAngle);
   const bool is_small = std::min(one.reach, other.reach) <= kFlat;
   // The one that bends more.
-  const bool first = other_flat || (!flat && one.turn >= other.turn);
+  const bool first = one.turn >= other.turn;
   std::optional<std::array<int, 2>> halves;
-  if (!(flat && other_flat) && !is_small) halves = first ? first_.halves(a) : second_.halves(b);
+  if (!together && !is_small) {
+    halves = first ? first_.halves(a) : second_.halves(b);
+  }
   if (!halves) {
     if (running_together_.size() < kMostTogether) {
       running_together_.push_back({a, b});
@@ -299,7 +310,7 @@ bool CrossingSearch::is_known(const CrossingPlace& place, const Vector3d& point)
 }
 
 /// The branch through a place where the surfaces meet, unless it is known; a tangency where there
-/// is none that is longer than `reach`.
+/// is none.
 void CrossingSearch::follow(const CrossingPlace& place, double reach) {
   if (const auto start = walk_.settled(place)) {
     if (is_known(start->place(), start->point())) return;
@@ -309,7 +320,7 @@ void CrossingSearch::follow(const CrossingPlace& place, double reach) {
     }
     KnownCrossing found(walk_.branch_through(*start));
     points_ += found.branch().points.size();
-    if (found.length() > std::max(reach, 10 * kGeometric)) {
+    if (found.length() > kNear) {
       known_.push_back(std::move(found));
       return;
     }
@@ -317,15 +328,25 @@ void CrossingSearch::follow(const CrossingPlace& place, double reach) {
   add_tangency(place, reach, true);
 }
 
+/// Where curves lead through, the surfaces may be tangent, or one may have a pole: no touch.
 void CrossingSearch::add_tangency(const CrossingPlace& place, double reach, bool is_single) {
-  tangencies_.push_back(
-      {place, first_.index().surface().point({place[0], place[1]}), reach, is_single});
+  const Vector3d point = first_.index().surface().point({place[0], place[1]});
+  const double room = std::max(2 * tolerance_, kNear);
+  const bool on_curve = std::any_of(known_.begin(), known_.end(), [&](const KnownCrossing& known) {
+    return known.any_near(point, room, [&](const CrossingSegment& segment, double x) {
+      return (segment.at(x).head<3>() - point).norm() <= room;
+    });
+  });
+  if (!on_curve) tangencies_.push_back({place, point, reach, is_single});
 }
 
 /// Whether both are one curve in space, which runs along a seam and so has two places in a surface.
 bool CrossingSearch::is_seam(const KnownCrossing& one, const KnownCrossing& other) const {
-  if (std::abs(one.length() - other.length()) > 0.01 * one.length()) return false;
-  if (!walk_.runs_along_edge(one.branch()) || !walk_.runs_along_edge(other.branch())) return false;
+  const auto edge = walk_.edge_along(one.branch());
+  const auto opposite = walk_.edge_along(other.branch());
+  if (!edge || !opposite || edge->parameter != opposite->parameter ||
+      edge->upper == opposite->upper)
+    return false;
   return std::all_of(
       one.branch().points.begin(), one.branch().points.end(), [&](const CrossingPoint& p) {
         return other.any_near(p.point(), tolerance_, [&](const CrossingSegment& segment, double x) {
@@ -341,11 +362,16 @@ void CrossingSearch::look_for_touch(const PatchBound& a, const PatchBound& b) {
   Vector4d half;
   center << a.box.center(), b.box.center();
   half << a.box.half(), b.box.half();
+  // Beside a curve on which curved surfaces become tangent its parts run together, too. (Planar
+  // parts may be large, and run together elsewhere.)
+  const double height =
+      std::max(a.frame_high.z() - a.frame_low.z(), b.frame_high.z() - b.frame_low.z());
+  constexpr double kPlanar = 1e-3 * kFlat;
   bool passed = false;
   for (const KnownCrossing& known : known_) {
     known.clip(center - 2 * half, center + 2 * half, [&](auto&, auto&) { passed = true; });
   }
-  if (passed) return;
+  if (passed && height > kPlanar) return;
   CrossingPlace place = center;
   constexpr int kMostSteps = 30;
   constexpr double kMeets = 2 * kGeometric;
@@ -380,8 +406,8 @@ void CrossingSearch::look_for_touch(const PatchBound& a, const PatchBound& b) {
 /// wide as any two may be apart.
 std::vector<SurfaceTouch> CrossingSearch::touches() const {
   const std::size_t count = tangencies_.size();
-  double width = 20 * kGeometric;
-  for (const Tangency& t : tangencies_) width = std::max(width, 4 * t.reach + 10 * kGeometric);
+  double width = 2 * kNear;
+  for (const Tangency& t : tangencies_) width = std::max(width, 4 * t.reach + kNear);
   using GridCell = std::array<std::int64_t, 3>;
   const auto cell_of = [width](const Vector3d& p) {
     constexpr double kMost = 1e15;
@@ -408,7 +434,7 @@ std::vector<SurfaceTouch> CrossingSearch::touches() const {
       for (const std::size_t j : found->second) {
         if (root(i) == root(j)) continue;
         const Tangency& other = tangencies_[j];
-        const double room = 2 * (next.reach + other.reach) + 10 * kGeometric;
+        const double room = 2 * (next.reach + other.reach) + kNear;
         if ((next.point - other.point).norm() <= room) parent[root(i)] = root(j);
       }
     }
@@ -438,9 +464,9 @@ std::vector<SurfaceTouch> CrossingSearch::touches() const {
   return out;
 }
 
-/// The three curves of a branch. Knots are double where segments meet, so that tangents agree, and
-/// triple at corners.
-SurfaceCrossing crossing_of(const CrossingBranch& branch) {
+/// The three curves of a branch; none where its knots can't be told apart. Knots are double where
+/// segments meet, so that tangents agree, and triple at corners.
+std::optional<SurfaceCrossing> crossing_of(const CrossingBranch& branch) {
   std::vector<double> knots(4, 0.0);
   std::vector<CrossingSegment::Vector> points = {branch.points.front().at};
   double at = 0;
@@ -464,7 +490,7 @@ SurfaceCrossing crossing_of(const CrossingBranch& branch) {
   knots.insert(knots.end(), 4, at);
   points.push_back(branch.points.back().at);
   const auto knot_vector = KnotVector::make(3, std::move(knots));
-  LIMN_EXPECT(knot_vector.has_value());
+  if (!knot_vector) return std::nullopt;
   std::vector<Vector3d> in_space;
   std::vector<Vector2d> on_first;
   std::vector<Vector2d> on_second;
@@ -473,9 +499,12 @@ SurfaceCrossing crossing_of(const CrossingBranch& branch) {
     on_first.push_back(p.segment<2>(3));
     on_second.push_back(p.tail<2>());
   }
-  return {*BsplineCurve<3>::make(*knot_vector, in_space),
-          *BsplineCurve<2>::make(*knot_vector, on_first),
-          *BsplineCurve<2>::make(*knot_vector, on_second), branch.deviation, branch.is_closed};
+  auto curve = BsplineCurve<3>::make(*knot_vector, in_space);
+  auto first = BsplineCurve<2>::make(*knot_vector, on_first);
+  auto second = BsplineCurve<2>::make(*knot_vector, on_second);
+  if (!curve || !first || !second) return std::nullopt;
+  return SurfaceCrossing{*std::move(curve), *std::move(first), *std::move(second), branch.deviation,
+                         branch.is_closed};
 }
 
 SurfaceCrossings CrossingSearch::run() {
@@ -485,7 +514,12 @@ SurfaceCrossings CrossingSearch::run() {
   for (std::size_t i = 0; i < known_.size(); ++i) {
     const bool repeats = std::any_of(known_.begin(), known_.begin() + std::ptrdiff_t(i),
                                      [&](const KnownCrossing& k) { return is_seam(known_[i], k); });
-    if (!repeats) out.curves.push_back(crossing_of(known_[i].branch()));
+    if (repeats) continue;
+    if (auto crossing = crossing_of(known_[i].branch())) {
+      out.curves.push_back(*std::move(crossing));
+    } else {
+      complete_ = false;  // too short, or too far away, for knots of its own
+    }
   }
   out.touches = touches();
   out.complete = complete_;
@@ -497,7 +531,7 @@ SurfaceCrossings CrossingSearch::run() {
 SurfaceCrossings cross_surfaces(const SurfaceIndex& first, const SurfaceIndex& second,
                                 double tolerance) {
   LIMN_EXPECT(tolerance > 0);
-  return CrossingSearch(first, second, tolerance).run();
+  return CrossingSearch(first, second, std::max(tolerance, kNear)).run();
 }
 
 }  // namespace limn

@@ -24,7 +24,8 @@ struct SurfaceCrossing {
   bool is_closed = false;
 };
 
-/// Where two surfaces meet tangentially: a place, or a connected set of them.
+/// Where two surfaces meet and do not cross, tangentially for the most part: a place, or a
+/// connected set of them.
 struct SurfaceTouch {
   Eigen::Vector3d point;  ///< one of the set
   Eigen::Vector2d on_first;
@@ -40,7 +41,8 @@ struct SurfaceCrossings {
   bool complete = true;
 };
 
-/// All curves in which two surfaces cross, within `tolerance` (mm, more than 0).
+/// All curves in which two surfaces cross, within `tolerance` (mm, more than 0; 1e-8 at least) of
+/// both: off the true curve by more where they meet at a small angle.
 ///
 /// Parts of both are halved until their bounds show that they are apart, or that they cross in one
 /// curve at most at each value of one of the four parameters; that curve is looked for and followed

@@ -157,6 +157,9 @@ Arguments parse(const std::vector<std::string_view>& words) {
       if (!area.when_named) result.areas.push_back(&area);
     }
   }
+  const bool draws = std::any_of(result.areas.begin(), result.areas.end(),
+                                 [](const Area* area) { return area->draw != nullptr; });
+  if (!result.plot.empty() && !draws) result.complaint = "--plot is for the area growth; name it";
   return result;
 }
 

@@ -123,6 +123,42 @@ TEST(CrossSurfaces, KnownCurves) {
   expect_curves(square({0, 0, 0}, 10), square({0, 0, 0.001}, 10), 0, 0, "parallel");
 }
 
+/// Planar shapes whose parameters turn, or that have poles, are planes all the same.
+TEST(CrossSurfaces, PlanarShapes) {
+  const Vector3d z = Vector3d::UnitZ();
+  const auto trapezoid = *BsplineSurface::make(
+      {*KnotVector::make(1, {0, 0, 1, 1}), *KnotVector::make(1, {0, 0, 1, 1})},
+      {{0, 0, 0}, {10, 0, 0}, {2.5, 10, 0}, {7.5, 10, 0}});
+  // Along x + y = 1, which cuts the sides y = 4 x and y = 0.
+  expect_curves(trapezoid, square({0.5, 0.5, 0}, 20, Vector3d(1, -1, 0).normalized(), z), 1,
+                std::hypot(0.8, 0.8), "a corner of a trapezoid");
+  const auto disc = *make_disc(frame_at({0, 0, 0}), 5);
+  expect_curves(disc, square({0, 4.9, 0}, 20, Vector3d::UnitX(), z), 1,
+                2 * std::sqrt(25 - 4.9 * 4.9), "a chord near the rim");
+  expect_curves(disc, square({0, 0, 0}, 20, Vector3d(1, 2, 0).normalized(), z), 2, 10,
+                "through the centre, a pole");
+}
+
+/// Whatever the frame, coplanar shapes share an area, and neither cross nor touch in a place.
+TEST(CrossSurfacesLaw, CoplanarSquaresShareAnArea) {
+  test::for_all(200, [](test::Rng& rng) {
+    const auto any = [&rng] {
+      return Vector3d(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
+    };
+    const Vector3d x = any().normalized();
+    const Vector3d y = x.cross(any()).normalized();
+    const double turn = rng.uniform(0, 2 * pi);
+    const Vector3d x2 = std::cos(turn) * x + std::sin(turn) * y;
+    const Vector3d y2 = std::cos(turn) * y - std::sin(turn) * x;
+    const Vector3d middle = 10 * any();
+    const SurfaceCrossings found =
+        cross(square(middle, 10, x, y), square(middle + 2 * x + y, 10, x2, y2));
+    EXPECT_TRUE(found.curves.empty());
+    ASSERT_EQ(found.touches.size(), 1U);
+    EXPECT_GT(found.touches[0].extent, 5);
+  });
+}
+
 TEST(CrossSurfaces, SmallLoops) {
   // Two spheres of radius 5, d apart, share a circle of radius sqrt(25 - d^2 / 4).
   for (const double gap : {1e-1, 1e-3, 1e-5, 1e-7}) {
@@ -327,6 +363,15 @@ TEST_P(CrossSurfacesAgree, WithOpenCascade) {
         const Vector3d gap = test::limn_point(their_first.jet(p.x(), p.y()).point) -
                              test::limn_point(their_second.jet(q.x(), q.y()).point);
         EXPECT_LE(gap.norm(), 2 * kTolerance);
+      }
+      // It is no other curve of limn's again.
+      for (std::size_t other = 0; other < corners.size(); ++other) {
+        if (other == c) continue;
+        double farthest = 0;
+        for (const Vector3d& p : corners[c]) {
+          farthest = std::max(farthest, distance_to(corners[other], p));
+        }
+        EXPECT_GT(farthest, 10 * kTolerance);
       }
       ++(extra.is_closed ? found.missed_loops : found.missed_arcs);
     }
