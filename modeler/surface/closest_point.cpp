@@ -65,7 +65,7 @@ double part_of(const Vector2d& distance, const Vector2d& half) noexcept {
 Vector2d least_step(const Objective& f, const Vector2d& low, const Vector2d& high) noexcept {
   const double per_det = 1 / f.determinant();
   Vector2d free((f.uv * f.gradient.y() - f.vv * f.gradient.x()) * per_det,
-                      (f.uv * f.gradient.x() - f.uu * f.gradient.y()) * per_det);
+                (f.uv * f.gradient.x() - f.uu * f.gradient.y()) * per_det);
   if (contains({low, high}, free)) return free;
   const auto value = [&f](const Vector2d& d) {
     return f.gradient.dot(d) + 0.5 * (f.uu * d.x() * d.x() + f.vv * d.y() * d.y()) +
