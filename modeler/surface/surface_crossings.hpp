@@ -36,8 +36,10 @@ struct SurfaceTouch {
 struct SurfaceCrossings {
   std::vector<SurfaceCrossing> curves;
   std::vector<SurfaceTouch> touches;
-  /// Whether these are all. False where the search was cut off after a bounded number of parts: the
-  /// surfaces run together over an area, or nearly do.
+  /// False where the search was cut off after a bounded number of parts: the surfaces run together
+  /// over an area, or nearly do. It does not tell of curves that end early, where following one
+  /// failed, nor of two that are so near each other, at a small angle, that `tolerance` makes them
+  /// one.
   bool complete = true;
 };
 
