@@ -296,18 +296,25 @@ double CrossingWalk::deviation_of(const CrossingSegment& segment, const Pieces& 
 std::optional<CrossingPoint> CrossingWalk::advance(const CrossingPoint& from, const Pieces& pieces,
                                                    double& length, double& deviation) const {
   length = std::min(length, longest_step(from, pieces));
-  for (; length >= kLeastStep; length *= 0.5) {
-    const auto next = step(from, pieces, length);
-    if (!next) continue;
-    const CrossingSegment segment(from, *next);
-    const double off = deviation_of(segment, pieces);
-    if (!(off <= tolerance_)) continue;
+  while (length >= kLeastStep) {
+    auto next = step(from, pieces, length);
+    double off = std::numeric_limits<double>::infinity();
+    double chord = 0;
+    if (next) {
+      const CrossingSegment segment(from, *next);
+      off = deviation_of(segment, pieces);
+      chord = segment.length();
+    }
+    if (!(off <= tolerance_)) {
+      length *= 0.5;
+      continue;
+    }
     deviation = std::max(deviation, off);
     // Deviations grow with the fourth power of the length.
     constexpr double kMostGrowth = 2;
     constexpr double kCaution = 0.9;
     const double growth = off > 0 ? kCaution * std::pow(tolerance_ / off, 0.25) : kMostGrowth;
-    length = std::max(0.5 * length, std::min(growth, kMostGrowth) * segment.length());
+    length = std::max(0.5 * length, std::min(growth, kMostGrowth) * chord);
     return next;
   }
   return std::nullopt;
