@@ -60,9 +60,9 @@ class ControlPointMap {
 };
 
 /// Maps layers of `layer` doubles, one after another: out layer r = sum_k a_{r,k} in layer
-/// first(r) + k. In holds map.columns() layers, out gets map.rows(); they must not overlap. Gives
-/// the same bits on every processor.
-void map_layers(const ControlPointMap& map, std::size_t layer, const double* in,
+/// first(r) + k. Each block of `in` holds map.columns() layers, out gets map.rows() a block, one
+/// after another; they must not overlap. Gives the same bits on every processor.
+void map_layers(const ControlPointMap& map, std::size_t layer, std::span<const double* const> in,
                 double* out) noexcept;
 
 /// out[i] = sum_k coefficients[k] in[k][i] for i < count, the terms added in this order; the same

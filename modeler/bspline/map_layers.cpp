@@ -54,37 +54,55 @@ LIMN_KERNEL void add_any(std::span<const double> a, const double* const* in, std
   }
 }
 
-/// Layers of kLayer doubles, a point each, by vectors of four: what such a vector reads and writes
-/// beyond its layer must be of the array, so the last ones are left to the caller. Returns how many
-/// rows are done.
-template <std::size_t kLayer>
-LIMN_KERNEL void map_points(const ControlPointMap& map, const double* in, double* out,
+/// Layers of kLayer doubles, a point each, by vectors of four, of kBlocks blocks at once: what such
+/// a vector reads and writes beyond its layer must be of the array, so the last ones are left to
+/// the caller. Returns how many rows are done.
+template <std::size_t kLayer, std::size_t kBlocks>
+LIMN_KERNEL void map_points(const ControlPointMap& map, const double* const* in, double* out,
                             int& done) noexcept {
+  const auto out_step = static_cast<std::size_t>(map.rows()) * kLayer;
+  const double* blocks[kBlocks];
+  for (std::size_t b = 0; b < kBlocks; ++b) blocks[b] = in[b];
   const int count = map.rows() - 1;
-  const int columns = map.columns();
   int r = 0;
   for (; r < count; ++r, out += kLayer) {
     const ControlPointMap::Sum row = map.sum(r);
-    if (row.first + row.size >= columns) break;
-    const double* from = in + static_cast<std::size_t>(row.first) * kLayer;
-    Lanes x;
-    load(from, x);
-    Lanes sum = row.coefficients[0] * x;
-    if (row.size > 1) {
-      load(from + kLayer, x);
-      sum += row.coefficients[1] * x;
+    if (row.first + row.size >= map.columns()) break;
+    std::size_t from = static_cast<std::size_t>(row.first) * kLayer;
+    Lanes sums[kBlocks];
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      Lanes x;
+      load(blocks[b] + from, x);
+      sums[b] = row.coefficients[0] * x;
     }
-    if (row.size > 2) {
-      load(from + 2 * kLayer, x);
-      sum += row.coefficients[2] * x;
+    for (int k = 1; k < row.size; ++k) {
+      from += kLayer;
+      const double a = row.coefficients[k];
+      for (std::size_t b = 0; b < kBlocks; ++b) {
+        Lanes x;
+        load(blocks[b] + from, x);
+        sums[b] += a * x;
+      }
     }
-    for (int k = 3; k < row.size; ++k) {
-      load(from + static_cast<std::size_t>(k) * kLayer, x);
-      sum += row.coefficients[k] * x;
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      const Lanes sum = sums[b];  // a copy: what has an address is not kept in a register
+      std::memcpy(out + b * out_step, &sum, sizeof sum);
     }
-    std::memcpy(out, &sum, sizeof sum);
   }
   done = r;
+}
+
+constexpr std::size_t kTogether = 4;
+
+template <std::size_t kLayer>
+LIMN_KERNEL void map_blocks(const ControlPointMap& map, std::span<const double* const> in,
+                            double* out, int& done) noexcept {
+  const auto step = static_cast<std::size_t>(map.rows()) * kLayer;
+  std::size_t b = 0;
+  for (; b + kTogether <= in.size(); b += kTogether) {
+    map_points<kLayer, kTogether>(map, in.data() + b, out + b * step, done);
+  }
+  for (; b < in.size(); ++b) map_points<kLayer, 1>(map, in.data() + b, out + b * step, done);
 }
 
 LIMN_ON_EACH_PROCESSOR(add_layers_of,
@@ -92,11 +110,13 @@ LIMN_ON_EACH_PROCESSOR(add_layers_of,
                         double* out),
                        (a, in, count, out), add_any(a, in, count, out))
 LIMN_ON_EACH_PROCESSOR(map_triples,
-                       (const ControlPointMap& map, const double* in, double* out, int& done),
-                       (map, in, out, done), map_points<3>(map, in, out, done))
+                       (const ControlPointMap& map, std::span<const double* const> in, double* out,
+                        int& done),
+                       (map, in, out, done), map_blocks<3>(map, in, out, done))
 LIMN_ON_EACH_PROCESSOR(map_quadruples,
-                       (const ControlPointMap& map, const double* in, double* out, int& done),
-                       (map, in, out, done), map_points<4>(map, in, out, done))
+                       (const ControlPointMap& map, std::span<const double* const> in, double* out,
+                        int& done),
+                       (map, in, out, done), map_blocks<4>(map, in, out, done))
 
 }  // namespace
 }  // namespace bspline_detail
@@ -106,19 +126,21 @@ void add_layers(std::span<const double> coefficients, const double* const* in, s
   bspline_detail::add_layers_of(coefficients, in, count, out);
 }
 
-void map_layers(const ControlPointMap& map, std::size_t layer, const double* in,
+void map_layers(const ControlPointMap& map, std::size_t layer, std::span<const double* const> in,
                 double* out) noexcept {
   int done = 0;
   if (layer == 3) bspline_detail::map_triples(map, in, out, done);
   if (layer == 4) bspline_detail::map_quadruples(map, in, out, done);
-  out += static_cast<std::size_t>(done) * layer;
-  for (int r = done; r < map.rows(); ++r, out += layer) {
-    const ControlPointMap::Sum row = map.sum(r);
-    const double* from = in + static_cast<std::size_t>(row.first) * layer;
-    for (std::size_t i = 0; i < layer; ++i) out[i] = row.coefficients[0] * from[i];
-    for (int k = 1; k < row.size; ++k) {
-      from += layer;
-      for (std::size_t i = 0; i < layer; ++i) out[i] += row.coefficients[k] * from[i];
+  for (const double* block : in) {
+    out += static_cast<std::size_t>(done) * layer;
+    for (int r = done; r < map.rows(); ++r, out += layer) {
+      const ControlPointMap::Sum row = map.sum(r);
+      const double* from = block + static_cast<std::size_t>(row.first) * layer;
+      for (std::size_t i = 0; i < layer; ++i) out[i] = row.coefficients[0] * from[i];
+      for (int k = 1; k < row.size; ++k) {
+        from += layer;
+        for (std::size_t i = 0; i < layer; ++i) out[i] += row.coefficients[k] * from[i];
+      }
     }
   }
 }

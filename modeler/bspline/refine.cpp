@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -47,56 +48,195 @@ struct Rows {
   std::size_t round;
 };
 
-/// Layers of few doubles: a block of them at a time.
-PagedArray refine_blocks(const PagedArray& from, const Layers& in,
-                         const KnotRefinement& refinement) {
-  const Rows rows(refinement);
-  std::vector<double> old(in.count * in.layer);
-  std::vector<double> block(rows.count * in.layer);
-  std::size_t next = 0;  // block to make
-  return PagedArray::generate(in.blocks * block.size(), [&](std::size_t at, std::span<double> out) {
-    while (!out.empty()) {
-      if (at == next * block.size()) {
-        from.read(next++ * old.size(), old);
-        map_layers(refinement.map, in.layer, old.data(), block.data());
-        for (std::size_t i = rows.round * in.layer; i < block.size(); ++i) {
-          block[i] = block[i - rows.round * in.layer];
-        }
-      }
-      const std::size_t begin = at % block.size();
-      const std::size_t count = std::min(block.size() - begin, out.size());
-      std::copy_n(block.data() + begin, count, out.data());
-      out = out.subspan(count);
-      at += count;
-    }
-  });
+/// Coordinates to read: a spline's, or those between one direction and the next.
+class Source {
+ public:
+  explicit Source(const PagedArray& pages) : pages_(&pages) {}
+  explicit Source(const double* values) : values_(values) {}
+
+  /// As PagedArray::run(), for any count.
+  const double* run(std::size_t i, std::size_t count, double* scratch) const {
+    if (values_ != nullptr) return values_ + i;
+    if (count <= PagedArray::kPageSize) return pages_->run(i, count, scratch);
+    pages_->read(i, {scratch, count});
+    return scratch;
+  }
+
+ private:
+  const PagedArray* pages_ = nullptr;
+  const double* values_ = nullptr;
+};
+
+using Scratch = std::unique_ptr<double[]>;
+
+Scratch make_scratch(std::size_t size) {
+  return std::make_unique_for_overwrite<double[]>(size + PagedArray::kPadding);
 }
 
-/// Layers of many doubles: as much of one as a page has room for at a time.
-PagedArray refine_layers(const PagedArray& from, const Layers& in,
-                         const KnotRefinement& refinement) {
-  const Rows rows(refinement);
-  constexpr std::size_t kRoom = PagedArray::kPageSize + PagedArray::kPadding;
-  const auto most = static_cast<std::size_t>(refinement.map.width());
-  const auto scratch = std::make_unique_for_overwrite<double[]>(most * kRoom);
-  std::vector<const double*> terms(most);
-  return PagedArray::generate(in.blocks * rows.count * in.layer, [&](std::size_t at,
-                                                                     std::span<double> out) {
+/// Layers of few doubles: some blocks at a time. Coordinates are asked for in ascending order.
+class BlockRefinement {
+ public:
+  BlockRefinement(Source from, const Layers& in, const KnotRefinement& refinement)
+      : from_(from),
+        in_(in),
+        map_(refinement.map),
+        rows_(refinement),
+        old_size_(in.count * in.layer),
+        size_(rows_.count * in.layer),
+        most_(std::min(in.blocks,
+                       std::max(kDoubles / size_ / kTogether, std::size_t{1}) * kTogether)),
+        scratch_(make_scratch(most_ * (old_size_ + PagedArray::kPadding))),
+        blocks_(most_),
+        made_(make_scratch(most_ * size_)) {}
+
+  void operator()(std::size_t at, std::span<double> out) {
     while (!out.empty()) {
-      const std::size_t layer = at / in.layer;
-      const std::size_t begin = at % in.layer;
-      const std::size_t count = std::min(in.layer - begin, out.size());
-      const auto sum = refinement.map.sum(static_cast<int>(rows.of(layer % rows.count)));
-      const auto size = static_cast<std::size_t>(sum.size);
-      const std::size_t first = layer / rows.count * in.count + static_cast<std::size_t>(sum.first);
-      for (std::size_t k = 0; k < size; ++k) {
-        terms[k] = from.run((first + k) * in.layer + begin, count, scratch.get() + k * kRoom);
+      std::size_t part = 0;
+      if (at == (first_ + count_) * size_) {
+        begin_next();
+        if (out.size() >= count_ * size_) {
+          make(out.data());
+          part = count_ * size_;
+        } else {
+          make(made_.get());
+        }
       }
-      add_layers({sum.coefficients, size}, terms.data(), count, out.data());
+      if (part == 0) {
+        const std::size_t begin = at - first_ * size_;
+        part = std::min(count_ * size_ - begin, out.size());
+        std::copy_n(made_.get() + begin, part, out.data());
+      }
+      out = out.subspan(part);
+      at += part;
+    }
+  }
+
+ private:
+  /// Blocks at a time: what map_layers() does best, as many as the processor keeps near.
+  static constexpr std::size_t kTogether = 4;
+  static constexpr std::size_t kDoubles = 4096;
+
+  void begin_next() {
+    first_ += count_;
+    count_ = std::min(most_, in_.blocks - first_);
+  }
+  /// The blocks from first_ on.
+  void make(double* out) {
+    for (std::size_t b = 0; b < count_; ++b) {
+      blocks_[b] = from_.run((first_ + b) * old_size_, old_size_,
+                             scratch_.get() + b * (old_size_ + PagedArray::kPadding));
+    }
+    map_layers(map_, in_.layer, {blocks_.data(), count_}, out);
+    const std::size_t round = rows_.round * in_.layer;
+    for (std::size_t b = 0; b < count_; ++b, out += size_) {
+      for (std::size_t i = round; i < size_; ++i) out[i] = out[i - round];
+    }
+  }
+
+  Source from_;
+  Layers in_;
+  const ControlPointMap& map_;
+  Rows rows_;
+  std::size_t old_size_;
+  std::size_t size_;
+  std::size_t most_;
+  Scratch scratch_;
+  std::vector<const double*> blocks_;
+  Scratch made_;
+  std::size_t first_ = 0;  ///< block that made_ begins with
+  std::size_t count_ = 0;  ///< blocks that it holds
+};
+
+/// Layers of many doubles: as much of one as a page has room for at a time.
+class LayerRefinement {
+ public:
+  LayerRefinement(Source from, const Layers& in, const KnotRefinement& refinement)
+      : from_(from),
+        in_(in),
+        map_(refinement.map),
+        rows_(refinement),
+        scratch_(make_scratch(static_cast<std::size_t>(map_.width()) * kRoom)),
+        terms_(static_cast<std::size_t>(map_.width())) {}
+
+  void operator()(std::size_t at, std::span<double> out) {
+    while (!out.empty()) {
+      const std::size_t layer = at / in_.layer;
+      const std::size_t begin = at % in_.layer;
+      const std::size_t count =
+          std::min({in_.layer - begin, out.size(), std::size_t{PagedArray::kPageSize}});
+      const auto sum = map_.sum(static_cast<int>(rows_.of(layer % rows_.count)));
+      const auto size = static_cast<std::size_t>(sum.size);
+      const std::size_t first =
+          layer / rows_.count * in_.count + static_cast<std::size_t>(sum.first);
+      for (std::size_t k = 0; k < size; ++k) {
+        terms_[k] = from_.run((first + k) * in_.layer + begin, count, scratch_.get() + k * kRoom);
+      }
+      add_layers({sum.coefficients, size}, terms_.data(), count, out.data());
       out = out.subspan(count);
       at += count;
     }
-  });
+  }
+
+ private:
+  static constexpr std::size_t kRoom = PagedArray::kPageSize + PagedArray::kPadding;
+
+  Source from_;
+  Layers in_;
+  const ControlPointMap& map_;
+  Rows rows_;
+  Scratch scratch_;
+  std::vector<const double*> terms_;
+};
+
+/// Calls `use` with what fills an array with the refined coordinates.
+template <class Use>
+void with_refinement(Source from, const Layers& in, const KnotRefinement& refinement, Use use) {
+  constexpr std::size_t kFew = 16;
+  if (in.layer < kFew) {
+    use(BlockRefinement(from, in, refinement));
+  } else {
+    use(LayerRefinement(from, in, refinement));
+  }
+}
+
+struct Step {
+  int direction;
+  const KnotRefinement* refinement;
+};
+
+/// One direction after another; only what comes out at the end is checked and put into pages.
+Expected<SplineData> refine_along(const SplineData& spline, std::span<const Step> steps) {
+  if (steps.empty()) return spline;
+  std::vector<KnotVector> knots(spline.knots().begin(), spline.knots().end());
+  Scratch between;
+  Source from(spline.coordinates());
+  std::size_t size = spline.coordinates().size();
+  PagedArray made;
+  std::size_t layer = 0;
+  for (const Step& step : steps) {
+    const auto direction = static_cast<std::size_t>(step.direction);
+    layer = static_cast<std::size_t>(spline.width());
+    for (std::size_t d = 0; d < direction; ++d) {
+      layer *= static_cast<std::size_t>(knots[d].basis_count());
+    }
+    const auto count = static_cast<std::size_t>(knots[direction].basis_count());
+    const Layers in{layer, count, size / (layer * count)};
+    size = in.blocks * static_cast<std::size_t>(step.refinement->map.rows()) * layer;
+    knots[direction] = step.refinement->knots;
+    const bool last = &step == &steps.back();
+    with_refinement(from, in, *step.refinement, [&](auto fill) {
+      if (last) {
+        made = PagedArray::generate(size,
+                                    [&](std::size_t at, std::span<double> out) { fill(at, out); });
+      } else {
+        Scratch next = make_scratch(size);
+        fill(0, {next.get(), size});
+        between = std::move(next);
+        from = Source(between.get());
+      }
+    });
+  }
+  return SplineData::make(knots, spline.dimension(), spline.form(), std::move(made));
 }
 
 }  // namespace
@@ -104,18 +244,32 @@ PagedArray refine_layers(const PagedArray& from, const Layers& in,
 Expected<SplineData> refine(const SplineData& spline, int direction,
                             const KnotRefinement& refinement) {
   LIMN_EXPECT(refinement.map.columns() == spline.knots(direction).basis_count());
-  const Layers in = layers_of(spline, direction);
-  constexpr std::size_t kFew = 16;
-  return with_direction(spline, direction, refinement.knots,
-                        in.layer < kFew ? refine_blocks(spline.coordinates(), in, refinement)
-                                        : refine_layers(spline.coordinates(), in, refinement));
+  const Step step{direction, &refinement};
+  return refine_along(spline, {&step, 1});
 }
 
 Expected<SplineData> insert_knots(const SplineData& spline, int direction,
                                   std::span<const double> added) {
+  if (added.empty()) return spline;
   auto refinement = insert_knots(spline.knots(direction), added);
   if (!refinement) return tl::unexpected(std::move(refinement.error()));
   return refine(spline, direction, *refinement);
+}
+
+Expected<SplineData> insert_knots(const SplineData& spline,
+                                  std::span<const std::span<const double>> added) {
+  LIMN_EXPECT(added.size() == spline.knots().size());
+  std::vector<KnotRefinement> refinements;
+  std::vector<Step> steps;
+  refinements.reserve(added.size());  // steps point into it
+  for (std::size_t d = 0; d < added.size(); ++d) {
+    if (added[d].empty()) continue;
+    auto refinement = insert_knots(spline.knots(static_cast<int>(d)), added[d]);
+    if (!refinement) return tl::unexpected(std::move(refinement.error()));
+    refinements.push_back(*std::move(refinement));
+    steps.push_back({static_cast<int>(d), &refinements.back()});
+  }
+  return refine_along(spline, steps);
 }
 
 Expected<SplineData> elevate_degree(const SplineData& spline, int direction, int by) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <span>
 
 #include "modeler/bspline/control_point_map.hpp"
@@ -19,6 +21,11 @@ Expected<SplineData> refine(const SplineData& spline, int direction,
 /// With knots added in one direction. Errors as for knot vectors.
 Expected<SplineData> insert_knots(const SplineData& spline, int direction,
                                   std::span<const double> added);
+
+/// With knots added in each direction at once, added[d] in direction d: what that gives in between
+/// is neither checked nor put into pages. Precondition: a list, which may be empty, a direction.
+Expected<SplineData> insert_knots(const SplineData& spline,
+                                  std::span<const std::span<const double>> added);
 
 /// Of a higher degree in one direction. Errors as for knot vectors.
 Expected<SplineData> elevate_degree(const SplineData& spline, int direction, int by);
@@ -50,6 +57,12 @@ Expected<TensorSpline<kDirections, kDimension>> insert_knots(
     const TensorSpline<kDirections, kDimension>& spline, int direction,
     std::span<const double> added) {
   return TensorSpline<kDirections, kDimension>::from(insert_knots(spline.data(), direction, added));
+}
+template <int kDirections, int kDimension>
+Expected<TensorSpline<kDirections, kDimension>> insert_knots(
+    const TensorSpline<kDirections, kDimension>& spline,
+    const std::array<std::span<const double>, std::size_t{kDirections}>& added) {
+  return TensorSpline<kDirections, kDimension>::from(insert_knots(spline.data(), added));
 }
 template <int kDirections, int kDimension>
 Expected<TensorSpline<kDirections, kDimension>> elevate_degree(

@@ -25,17 +25,22 @@ bool repeats_along(const PagedArray& coordinates, std::size_t stride, std::size_
   return true;
 }
 
-/// Whether a value is infinite or no number: times 0 such a one is no number, others are 0.
+/// Whether a value is infinite or no number: times 0 such a one is no number, others are 0. Four
+/// sums, so that none waits for the one before.
 LIMN_KERNEL void find_infinite(std::span<const double> values, bool& found) noexcept {
   using bspline_detail::Lanes;
+  constexpr std::size_t kSums = 4;
   const Lanes zero = {0, 0, 0, 0};
-  Lanes sum = zero;
+  Lanes sums[kSums] = {zero, zero, zero, zero};
   std::size_t i = 0;
-  for (; i + 4 <= values.size(); i += 4) {
-    Lanes x;
-    bspline_detail::load(values.data() + i, x);
-    sum += x * zero;
+  for (; i + 4 * kSums <= values.size(); i += 4 * kSums) {
+    for (std::size_t k = 0; k < kSums; ++k) {
+      Lanes x;
+      bspline_detail::load(values.data() + i + 4 * k, x);
+      sums[k] += x * zero;
+    }
   }
+  const Lanes sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
   double rest = (sum[0] + sum[1]) + (sum[2] + sum[3]);
   for (; i < values.size(); ++i) rest += values[i] * 0;
   found = rest != 0;

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "modeler/bspline/refine.hpp"
 #include "modeler/bspline/surface_evaluator.hpp"
@@ -221,6 +223,38 @@ TEST(BsplineLaw, RefinementOfVolumesLeavesTheShapeInEachDirection) {
       EXPECT_LE((inserted->point(u) - volume.point(u)).norm(), kRefined);
       EXPECT_LE((raised->point(u) - volume.point(u)).norm(), kRefined);
     }
+  });
+}
+
+template <int kDirections, int kDimension>
+void insert_in_all_directions(Rng& rng) {
+  using Spline = TensorSpline<kDirections, kDimension>;
+  typename Spline::Knots knots;
+  for (auto& k : knots) k = any_knots(rng, static_cast<int>(rng.integer(1, 4)));
+  const auto spline = any_spline<kDirections, kDimension>(rng, knots, rng.chance(0.5));
+  std::array<std::vector<double>, kDirections> added;
+  std::array<std::span<const double>, kDirections> at;
+  auto in_turn = spline;
+  for (int d = 0; d < kDirections; ++d) {
+    const auto sd = static_cast<std::size_t>(d);
+    for (auto i = rng.integer(0, 40); i > 0; --i)
+      added[sd].push_back(any_parameter(rng, knots[sd]));
+    at[sd] = added[sd];
+    auto next = insert_knots(in_turn, d, at[sd]);
+    ASSERT_TRUE(next.has_value()) << next.error().what;
+    in_turn = *std::move(next);
+  }
+  const auto at_once = insert_knots(spline, at);
+  ASSERT_TRUE(at_once.has_value()) << at_once.error().what;
+  EXPECT_TRUE(*at_once == in_turn) << "bit for bit";
+}
+
+TEST(BsplineLaw, InsertionInAllDirectionsIsThatInTurn) {
+  test::for_all(kCases / 4, [](Rng& rng) {
+    insert_in_all_directions<1, 3>(rng);
+    insert_in_all_directions<2, 3>(rng);
+    insert_in_all_directions<2, 10>(rng);
+    insert_in_all_directions<3, 2>(rng);
   });
 }
 

@@ -16,7 +16,7 @@ TEST(ControlPointMap, MapsLayersOfDoubles) {
   const ControlPointMap midpoints(3, 2, {0, 1}, {0.5, 0.5, 0.5, 0.5});
   const std::vector<double> in = {0, 100, 2, 200, 6, 400};
   std::vector<double> out(4);
-  map_layers(midpoints, 2, in.data(), out.data());
+  map_layers(midpoints, 2, std::array<const double*, 1>{in.data()}, out.data());
   EXPECT_THAT(out, ElementsAre(1, 150, 4, 300));
 }
 
@@ -27,13 +27,13 @@ TEST(ControlPointMap, ComposesLikeApplyingInTurn) {
   std::vector<double> middle(3);
   std::vector<double> twice(2);
   std::vector<double> once(2);
-  map_layers(inner, 1, in.data(), middle.data());
-  map_layers(outer, 1, middle.data(), twice.data());
+  map_layers(inner, 1, std::array<const double*, 1>{in.data()}, middle.data());
+  map_layers(outer, 1, std::array<const double*, 1>{middle.data()}, twice.data());
   const ControlPointMap both = compose(outer, inner);
   EXPECT_EQ(both.rows(), 2);
   EXPECT_EQ(both.columns(), 4);
   EXPECT_EQ(both.width(), 3) << "the union of two neighbouring rows, no more";
-  map_layers(both, 1, in.data(), once.data());
+  map_layers(both, 1, std::array<const double*, 1>{in.data()}, once.data());
   EXPECT_EQ(once, twice);
 }
 
