@@ -63,8 +63,9 @@ class PagedArray {
 
   /// Asks the processor for the same values, which are read soon.
   void prefetch(std::size_t i, std::size_t count) const noexcept {
+    constexpr std::size_t kLine = 8;  // doubles of a cache line
     const double* values = page(i) + i % kPageSize;
-    __builtin_prefetch(values);
+    for (std::size_t k = 0; k < count; k += kLine) __builtin_prefetch(values + k);
     __builtin_prefetch(values + count - 1);
   }
 

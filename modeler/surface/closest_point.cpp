@@ -211,6 +211,7 @@ class ClosestSearch {
     const std::size_t bottom = size_;
     for (; which != 0; which &= which - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(which));
+      index_.prefetch(node.child[i]);
       std::size_t to = size_++;
       for (; to > bottom && stack_[to - 1].square < square[i]; --to) stack_[to] = stack_[to - 1];
       stack_[to] = {square[i], node.child[i]};

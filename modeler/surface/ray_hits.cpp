@@ -79,6 +79,7 @@ class RaySearch {
       for (unsigned met = node.passages(ray_.origin, ray_.direction, most_, first.data()); met != 0;
            met &= met - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(met));
+        index_.prefetch(node.child[i]);
         std::size_t to = size++;  // the nearest on top
         for (; to > bottom && stack[to - 1].first < first[i]; --to) stack[to] = stack[to - 1];
         stack[to] = {first[i], node.child[i]};

@@ -28,6 +28,14 @@ void put_in_order(std::vector<std::int32_t>& order, std::vector<PatchBound>& ite
   }
 }
 
+template <class T>
+void prefetch_all(const T& object) noexcept {
+  constexpr std::size_t kLine = 64;
+  const char* first = reinterpret_cast<const char*>(&object);
+  for (std::size_t i = 0; i < sizeof object; i += kLine) __builtin_prefetch(first + i);
+  __builtin_prefetch(first + sizeof object - 1);
+}
+
 }  // namespace
 
 int wider_direction(const PatchBound& bound) noexcept {
@@ -77,6 +85,13 @@ void SurfaceIndex::add_leaves(Patch patch, int halvings) {
   Patch after = patch.halve(direction);
   add_leaves(std::move(patch), halvings + 1);
   add_leaves(std::move(after), halvings + 1);
+}
+
+void SurfaceIndex::prefetch(std::int32_t child) const noexcept {
+  if (child >= 0) return prefetch_all(nodes_[static_cast<std::size_t>(child)]);
+  const auto leaf = static_cast<std::size_t>(~child);
+  prefetch_all(boxes_[leaf]);
+  prefetch_all(leaves_[leaf]);
 }
 
 Patch SurfaceIndex::patch(const PatchBound& leaf) const {

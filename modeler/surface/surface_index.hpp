@@ -80,6 +80,9 @@ class SurfaceIndex {
   const std::vector<PatchBound>& leaves() const noexcept { return leaves_; }
   /// The hierarchy of the leaves' boxes. The root is first; empty where there is one leaf only.
   const std::vector<BoxNode>& nodes() const noexcept { return nodes_; }
+  /// Asks the processor for what is below a node: a node, or leaf ~child if below 0. Of large
+  /// surfaces it is not near, and what is asked for together comes together.
+  void prefetch(std::int32_t child) const noexcept;
   /// The Bézier form of a leaf.
   Patch patch(const PatchBound& leaf) const;
   /// The jet of the polynomial piece that a leaf, or a part of it, is of: at a knot line the limit

@@ -13,8 +13,13 @@ using Eigen::Vector2d;
 constexpr Color kInk = {40, 40, 40};
 constexpr Color kGrid = {215, 215, 215};
 /// Told apart by the colour-blind, too (Okabe and Ito's palette).
-constexpr std::array<Color, 6> kColors = {
-    {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {86, 180, 233}, {230, 159, 0}}};
+constexpr std::array<Color, 7> kColors = {{{0, 114, 178},
+                                           {213, 94, 0},
+                                           {0, 158, 115},
+                                           {204, 121, 167},
+                                           {86, 180, 233},
+                                           {230, 159, 0},
+                                           {0, 0, 0}}};
 
 constexpr double kWidth = 160;  // mm
 constexpr double kHeight = 110;
