@@ -12,6 +12,9 @@ using Lanes [[gnu::vector_size(32)]] = double;
 #define LIMN_KERNEL [[gnu::always_inline]] inline
 
 LIMN_KERNEL void load(const double* from, Lanes& to) noexcept { std::memcpy(&to, from, sizeof to); }
+LIMN_KERNEL void store(const Lanes& from, double* to) noexcept {
+  std::memcpy(to, &from, sizeof from);
+}
 
 /// Defines `void name parameters` twice, for any processor and for those with AVX2, and a function
 /// that calls the better one. `call` is a LIMN_KERNEL, which is compiled in both.

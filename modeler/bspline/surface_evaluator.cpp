@@ -6,77 +6,13 @@
 #include <vector>
 
 #include "input/base/expect.hpp"
-#include "modeler/bspline/lanes.hpp"
+#include "modeler/bspline/basis_kernels.hpp"
 
 namespace limn {
 namespace bspline_detail {
 namespace {
 
-constexpr int kMost = BasisTable::kMostDegree;
-constexpr int kMostPadded = (kMost + 4) / 4 * 4;
-
-/// The functions of one direction at a parameter: value[0][k], first and second derivatives.
-struct Functions {
-  alignas(32) double value[3][kMostPadded];
-  int first = 0;
-};
-
-/// Horner's scheme on kChunks times four functions: value, f' and f''/2 in t, then in u.
-template <int kOrder, int kChunks>
-LIMN_KERNEL void horner(const double* row, int degree, double t, double per_half,
-                        double (*out)[kMostPadded]) noexcept {
-  for (int chunk = 0; chunk < kChunks; ++chunk) {
-    const double* c = row + 4 * chunk;
-    Lanes value;
-    load(c, value);
-    Lanes first = {0, 0, 0, 0};
-    Lanes second = {0, 0, 0, 0};
-    for (int j = 0; j < degree; ++j) {
-      c += 4 * kChunks;
-      Lanes next;
-      load(c, next);
-      if constexpr (kOrder > 1) second = second * t + first;
-      if constexpr (kOrder > 0) first = first * t + value;
-      value = value * t + next;
-    }
-    std::memcpy(&out[0][4 * chunk], &value, sizeof value);
-    if constexpr (kOrder > 0) {
-      first *= per_half;
-      std::memcpy(&out[1][4 * chunk], &first, sizeof first);
-    }
-    if constexpr (kOrder > 1) {
-      second *= 2 * per_half * per_half;
-      std::memcpy(&out[2][4 * chunk], &second, sizeof second);
-    }
-  }
-}
-
-/// kDegree is the table's, or -1 where it is not known to the compiler.
-template <int kOrder, int kDegree>
-LIMN_KERNEL void evaluate_functions_in(const BasisTable& table, int span_number, double x,
-                                       Functions& out) noexcept {
-  const int degree = kDegree < 0 ? table.knots().degree() : kDegree;
-  const int i = span_number - degree;
-  const BasisTable::Span& span = table.span(i);
-  const double t = (x - span.middle) * span.per_half;
-  out.first = span.first;
-  const int padded = kDegree < 0 ? table.padded_count() : (kDegree + 4) / 4 * 4;
-  const double* row = table.coefficients() + static_cast<std::ptrdiff_t>(i) * (degree + 1) * padded;
-  switch (padded) {
-    case 4:
-      return horner<kOrder, 1>(row, degree, t, span.per_half, out.value);
-    case 8:
-      return horner<kOrder, 2>(row, degree, t, span.per_half, out.value);
-    default:
-      return horner<kOrder, 3>(row, degree, t, span.per_half, out.value);
-  }
-}
-
-template <int kOrder>
-LIMN_KERNEL void evaluate_functions(const BasisTable& table, double u, Functions& out) noexcept {
-  const double x = table.knots().clamp(u);
-  evaluate_functions_in<kOrder, -1>(table, table.knots().find_span(x), x, out);
-}
+using SurfaceFunctions = Functions<2>;
 
 LIMN_KERNEL void store(const Lanes& from, Eigen::Vector3d& to) noexcept {
   to[0] = from[0];
@@ -107,8 +43,8 @@ struct Prepared {
 /// The jet of a surface with kWidth coordinates a control point and degree kDegree in u, from the
 /// functions of both directions.
 template <int kWidth, int kDegree>
-LIMN_KERNEL void sum_jet(const Prepared& surface, int degree_v, const Functions& fu,
-                         const Functions& fv, SurfaceJet& out) noexcept {
+LIMN_KERNEL void sum_jet(const Prepared& surface, int degree_v, const SurfaceFunctions& fu,
+                         const SurfaceFunctions& fv, SurfaceJet& out) noexcept {
   const PagedArray& coordinates = surface.data->coordinates();
   const auto row_length = static_cast<std::size_t>(surface.data->knots(0).basis_count());
   constexpr std::size_t kRun = (kDegree + 1) * kWidth;
@@ -158,22 +94,22 @@ struct Place {
 template <int kWidth, int kDegree>
 LIMN_KERNEL void evaluate_jets(const Prepared& surface, const Place* places, std::size_t count,
                                SurfaceJet* out) noexcept {
-  Functions fu;
-  Functions fv;
+  SurfaceFunctions fu;
+  SurfaceFunctions fv;
   const int degree_v = surface.data->knots(1).degree();
   if constexpr (kDegree == 2 || kDegree == 3) {
     if (degree_v == kDegree) {  // the usual case, with loops of known length
       for (std::size_t i = 0; i < count; ++i) {
-        evaluate_functions_in<2, kDegree>(*surface.u, places[i].spans[0], places[i].at.x(), fu);
-        evaluate_functions_in<2, kDegree>(*surface.v, places[i].spans[1], places[i].at.y(), fv);
+        evaluate_functions_in<kDegree>(*surface.u, places[i].spans[0], places[i].at.x(), fu);
+        evaluate_functions_in<kDegree>(*surface.v, places[i].spans[1], places[i].at.y(), fv);
         sum_jet<kWidth, kDegree>(surface, kDegree, fu, fv, out[i]);
       }
       return;
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
-    evaluate_functions_in<2, kDegree>(*surface.u, places[i].spans[0], places[i].at.x(), fu);
-    evaluate_functions_in<2, -1>(*surface.v, places[i].spans[1], places[i].at.y(), fv);
+    evaluate_functions_in<kDegree>(*surface.u, places[i].spans[0], places[i].at.x(), fu);
+    evaluate_functions_in<-1>(*surface.v, places[i].spans[1], places[i].at.y(), fv);
     sum_jet<kWidth, kDegree>(surface, degree_v, fu, fv, out[i]);
   }
 }
@@ -226,18 +162,18 @@ void prefetch(const BsplineSurface& surface, const Place& place) noexcept {
 }
 
 /// Where a grid's parameters meet one direction.
-using FunctionList = std::vector<Functions>;
+using FunctionList = std::vector<Functions<1>>;
 
 LIMN_KERNEL void list_functions(const BasisTable& table, std::span<const double> at,
                                 FunctionList& out) noexcept {
-  for (std::size_t i = 0; i < at.size(); ++i) evaluate_functions<1>(table, at[i], out[i]);
+  for (std::size_t i = 0; i < at.size(); ++i) evaluate_functions(table, at[i], out[i]);
 }
 
 /// One line of a grid: control points of the curve at v and of its derivative along v, then the
 /// points on it.
 template <int kWidth>
-LIMN_KERNEL void evaluate_line(const Prepared& surface, const FunctionList& us, const Functions& fv,
-                               double* curve, SurfaceFrame* out) noexcept {
+LIMN_KERNEL void evaluate_line(const Prepared& surface, const FunctionList& us,
+                               const Functions<1>& fv, double* curve, SurfaceFrame* out) noexcept {
   const PagedArray& coordinates = surface.data->coordinates();
   const int degree_u = surface.data->knots(0).degree();
   const int degree_v = surface.data->knots(1).degree();
@@ -292,7 +228,7 @@ LIMN_KERNEL void evaluate_grid(const Prepared& surface, std::span<const double> 
   list_functions(*surface.u, us, lists_u);
   list_functions(*surface.v, vs, lists_v);
   const bool rational = surface.data->is_rational();
-  for (const Functions& fv : lists_v) {
+  for (const Functions<1>& fv : lists_v) {
     rational ? evaluate_line<4>(surface, lists_u, fv, curve, out)
              : evaluate_line<3>(surface, lists_u, fv, curve, out);
     out += us.size();

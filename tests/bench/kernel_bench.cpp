@@ -2,6 +2,7 @@
 // and Embree on the same surface; accuracy and misses.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -9,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "modeler/bspline/curve_evaluator.hpp"
 #include "modeler/bspline/refine.hpp"
+#include "modeler/bspline/volume_evaluator.hpp"
 #include "modeler/surface/surface_index.hpp"
 #include "tests/bench/areas.hpp"
 #include "tests/bench/measure.hpp"
@@ -321,9 +324,70 @@ void insertion(const Subject& s, const RowSink& sink) {
   compare.run(sink);
 }
 
+/// Uniform cubic knots over [0, 1].
+KnotVector cubic_knots(int count) {
+  std::vector<double> interior;
+  for (int i = 1; i < count - 3; ++i) interior.push_back(static_cast<double>(i) / (count - 3));
+  return *KnotVector::make_clamped(3, 0, 1, interior);
+}
+
+/// Curves and volumes, which no peer here has, or not the same: prepared against the recursion.
+void curves_and_volumes(const RowSink& sink) {
+  constexpr const char* kRecursion = "limn's own recursion";
+  constexpr std::size_t kPlaces = 100'000;
+  test::Rng rng(11);
+  const auto anywhere = [&rng] {
+    return Vector3d(rng.uniform(0, 1), rng.uniform(0, 1), rng.uniform(0, 1));
+  };
+  const KnotVector along = cubic_knots(103);
+  std::vector<Vector3d> points(103);
+  for (Vector3d& p : points) p = 100 * anywhere();
+  const CurveEvaluator<3> curve(*BsplineCurve<3>::make(along, points));
+  std::vector<double> us(kPlaces);
+  for (double& u : us) u = rng.uniform(0, 1);
+  std::vector<CurveJet<3>> curve_jets(kPlaces);
+  Comparison("kernel/point and three derivatives of a curve, 103", "ns", 1e9, kPlaces)
+      .limn([&] {
+        curve.jets(us, curve_jets);
+        keep(curve_jets.data());
+      })
+      .peer(kRecursion, at_least_ratio(3),
+            [&] {
+              std::array<Vector3d, 4> d;
+              for (const double u : us) {
+                curve.curve().derivatives(u, d);
+                keep(d[0]);
+              }
+            })
+      .run(sink);
+
+  const KnotVector side = cubic_knots(10);
+  points.resize(1000);
+  for (Vector3d& p : points) p = 100 * anywhere();
+  const VolumeEvaluator volume(*BsplineVolume::make({side, side, side}, points));
+  std::vector<Vector3d> at(kPlaces);
+  for (Vector3d& p : at) p = anywhere();
+  std::vector<VolumeJet> jets(kPlaces);
+  Comparison("kernel/point and tangents of a volume, 10^3", "ns", 1e9, kPlaces)
+      .limn([&] {
+        volume.jets(at, jets);
+        keep(jets.data());
+      })
+      .peer(kRecursion, at_least_ratio(3),
+            [&] {
+              std::array<Vector3d, 8> d;
+              for (const Vector3d& p : at) {
+                volume.volume().derivatives({p.x(), p.y(), p.z()}, {1, 1, 1}, d);
+                keep(d[0]);
+              }
+            })
+      .run(sink);
+}
+
 }  // namespace
 
 void kernel_area(const RowSink& sink) {
+  curves_and_volumes(sink);
   for (const int n : {13, 103, 1003}) {
     const Subject subject(n);
     if (n == 103) {
