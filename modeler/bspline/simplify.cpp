@@ -19,47 +19,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A row of a refinement is a copy of a control point if its coefficient is 1 to rounding.
 constexpr double kUnitRounding = 1e-13;
 
-/// No point of `a` is further from that of `b` at equal parameters. Both are on the same knots.
-double largest_difference(const SplineData& a, const SplineData& b) {
-  const auto width = static_cast<std::size_t>(a.width());
-  const auto dimension = static_cast<std::size_t>(a.dimension());
-  const std::vector<double> x = a.coordinates().to_vector();
-  const std::vector<double> y = b.coordinates().to_vector();
-  // With b's points near an origin o, C_a - C_b = ((A_a - w_a o) - (A_b - w_b o)
-  //   - (C_b - o) (w_a - w_b)) / w_a.
-  std::vector<double> origin(dimension, 0.0);
-  double least_weight = 1;
-  double reach = 0;
-  if (a.is_rational()) {
-    least_weight = kInfinity;
-    for (std::size_t i = 0; i < x.size(); i += width) {
-      const double w = y[i + dimension];
-      least_weight = std::min({least_weight, x[i + dimension], w});
-      for (std::size_t c = 0; c < dimension; ++c) {
-        origin[c] += y[i + c] / w / static_cast<double>(a.count());
-      }
-    }
-    if (!(least_weight > 0)) return kInfinity;
-    for (std::size_t i = 0; i < x.size(); i += width) {
-      double square = 0;
-      for (std::size_t c = 0; c < dimension; ++c) {
-        square += std::pow(y[i + c] / y[i + dimension] - origin[c], 2);
-      }
-      reach = std::max(reach, std::sqrt(square));
-    }
-  }
-  double largest = 0;
-  for (std::size_t i = 0; i < x.size(); i += width) {
-    const double by_weight = a.is_rational() ? x[i + dimension] - y[i + dimension] : 0.0;
-    double square = 0;
-    for (std::size_t c = 0; c < dimension; ++c) {
-      square += std::pow(x[i + c] - y[i + c] - by_weight * origin[c], 2);
-    }
-    largest = std::max(largest, (std::sqrt(square) + reach * std::abs(by_weight)) / least_weight);
-  }
-  return largest;
-}
-
 /// A refinement's map with the repetitions of periodic directions folded away: what is linearly
 /// independent of it.
 Eigen::MatrixXd folded(const KnotVector& from, const KnotRefinement& to) {
@@ -171,6 +130,46 @@ Expected<Simplified<SplineData>> with_deviation(const SplineData& before, int di
 }
 
 }  // namespace
+
+double largest_difference(const SplineData& a, const SplineData& b) {
+  const auto width = static_cast<std::size_t>(a.width());
+  const auto dimension = static_cast<std::size_t>(a.dimension());
+  const std::vector<double> x = a.coordinates().to_vector();
+  const std::vector<double> y = b.coordinates().to_vector();
+  // With b's points near an origin o, C_a - C_b = ((A_a - w_a o) - (A_b - w_b o)
+  //   - (C_b - o) (w_a - w_b)) / w_a.
+  std::vector<double> origin(dimension, 0.0);
+  double least_weight = 1;
+  double reach = 0;
+  if (a.is_rational()) {
+    least_weight = kInfinity;
+    for (std::size_t i = 0; i < x.size(); i += width) {
+      const double w = y[i + dimension];
+      least_weight = std::min({least_weight, x[i + dimension], w});
+      for (std::size_t c = 0; c < dimension; ++c) {
+        origin[c] += y[i + c] / w / static_cast<double>(a.count());
+      }
+    }
+    if (!(least_weight > 0)) return kInfinity;
+    for (std::size_t i = 0; i < x.size(); i += width) {
+      double square = 0;
+      for (std::size_t c = 0; c < dimension; ++c) {
+        square += std::pow(y[i + c] / y[i + dimension] - origin[c], 2);
+      }
+      reach = std::max(reach, std::sqrt(square));
+    }
+  }
+  double largest = 0;
+  for (std::size_t i = 0; i < x.size(); i += width) {
+    const double by_weight = a.is_rational() ? x[i + dimension] - y[i + dimension] : 0.0;
+    double square = 0;
+    for (std::size_t c = 0; c < dimension; ++c) {
+      square += std::pow(x[i + c] - y[i + c] - by_weight * origin[c], 2);
+    }
+    largest = std::max(largest, (std::sqrt(square) + reach * std::abs(by_weight)) / least_weight);
+  }
+  return largest;
+}
 
 Expected<KnotRefinement> remove_knot(const KnotVector& knots, double u) {
   if (!(u > knots.domain_begin() && u < knots.domain_end()) || knots.multiplicity(u) == 0) {

@@ -17,6 +17,10 @@ struct Simplified {
   double deviation = 0;
 };
 
+/// No point of `a` is further from that of `b` at equal parameters: a bound, infinite where a
+/// weight is not positive. Precondition: the same knots, dimension and form.
+double largest_difference(const SplineData& a, const SplineData& b);
+
 /// Without one of the knots `u` of one direction. Control points that the knot does not touch stay;
 /// the others are the least-squares solution of inserting it again, a linear map.
 /// Errors: kMissing where u is no knot inside the domain (move_seam() first to remove a periodic
