@@ -20,7 +20,7 @@ constexpr std::size_t kWidth = BoxNode::kWidth;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 float round_down(double x) noexcept {
-  constexpr double kMost = std::numeric_limits<float>::max();
+  constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
   if (!(x >= -kMost)) return -kInfinity;
   const auto rounded = static_cast<float>(std::min(x, kMost));
   return static_cast<double>(rounded) > x ? std::nextafter(rounded, -kInfinity) : rounded;
