@@ -28,7 +28,7 @@ CrossingCell::CrossingCell(const SurfaceIndex& first, const PatchBound& a,
     : first_(first), second_(second), a_(a), b_(b), turn_(std::hypot(a.turn, b.turn)) {
   center_ << a.box.center(), b.box.center();
   half_ << a.box.half(), b.box.half();
-  const Columns m = columns({a.jet, b.jet});
+  const Jacobian m = jacobian({a.jet, b.jet});
   double largest = -1;
   for (int k = 0; k < 4; ++k) {
     const double det = std::abs(without(m, k).determinant());
@@ -52,15 +52,9 @@ bool CrossingCell::is_transversal() const noexcept {
   return contraction_ <= kMostContraction;
 }
 
-CrossingCell::Pair CrossingCell::jets(const Vector4d& x) const {
+CrossingJets CrossingCell::jets(const Vector4d& x) const {
   const CrossingPlace at = place(x);
   return {first_.jet(a_, at.head<2>()), second_.jet(b_, at.tail<2>())};
-}
-
-CrossingCell::Columns CrossingCell::columns(const Pair& pair) const {
-  Columns out;
-  out << pair.first.du, pair.first.dv, -pair.second.du, -pair.second.dv;
-  return out * half_.asDiagonal();
 }
 
 bool CrossingCell::solve(double c, Vector4d& x) const {
@@ -69,9 +63,9 @@ bool CrossingCell::solve(double c, Vector4d& x) const {
   constexpr int kMostSteps = 20;
   constexpr double kLastStep = 1e-9;  // of a part's half side: squared it is below rounding
   for (int step = 0; step < kMostSteps; ++step) {
-    const Pair pair = jets(x);
-    const Matrix3d m = without(columns(pair), axis_);
-    const Vector3d move = m.inverse() * (pair.second.point - pair.first.point);
+    const CrossingJets pair = jets(x);
+    const Matrix3d m = without(jacobian(pair), axis_);
+    const Vector3d move = m.inverse() * pair.gap();
     if (!move.allFinite()) return false;
     for (int i = 0; i < 3; ++i) {
       double& y = x[i < axis_ ? i : i + 1];
@@ -91,10 +85,10 @@ bool CrossingCell::solve(double c, Vector4d& x) const {
 bool CrossingCell::excludes(double c, double reach, const Vector4d& x) const {
   Vector4d r = x.cwiseMax(-1.0).cwiseMin(1.0);
   r[axis_] = c;
-  const Pair pair = jets(r);
-  const Columns m = columns(pair);
+  const CrossingJets pair = jets(r);
+  const Jacobian m = jacobian(pair);
   const Matrix3d inverse = without(m, axis_).inverse();
-  const Vector3d move = inverse * (pair.second.point - pair.first.point);
+  const Vector3d move = inverse * pair.gap();
   const Vector3d slope = -inverse * m.col(axis_);
   const double a = move.norm() + reach * slope.norm();
   const double q = 2 * turn_ * inverse.norm();

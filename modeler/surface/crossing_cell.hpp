@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "modeler/surface/crossing_walk.hpp"
+#include "modeler/surface/crossing_jets.hpp"
 #include "modeler/surface/surface_index.hpp"
 
 namespace limn {
@@ -39,14 +39,10 @@ class CrossingCell {
   bool excludes(double c, double reach, const Eigen::Vector4d& x) const;
 
  private:
-  struct Pair {
-    SurfaceJet first;
-    SurfaceJet second;
-  };
-  using Columns = Eigen::Matrix<double, 3, 4>;
+  using Jacobian = Eigen::Matrix<double, 3, 4>;
 
-  Pair jets(const Eigen::Vector4d& x) const;
-  Columns columns(const Pair& pair) const;
+  CrossingJets jets(const Eigen::Vector4d& x) const;
+  Jacobian jacobian(const CrossingJets& at) const { return at.jacobian() * half_.asDiagonal(); }
 
   const SurfaceIndex& first_;
   const SurfaceIndex& second_;

@@ -19,13 +19,19 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-constexpr std::size_t kMostPoints = 100'000;
+constexpr std::size_t kMostSegments = 100'000;
 constexpr int kMostSettlings = 20;  ///< of one Newton iteration
 /// Quadratic convergence: what a step of this size (mm) leaves is below rounding.
 constexpr double kLastMove = 1e-7;
 constexpr double kLeastStep = 10 * kGeometric;
 /// Surfaces that meet at a smaller angle are tangent: rounding alone may turn the curve.
 constexpr double kLeastSine = 1e-7;
+/// Of the longest step, the first: nothing is known yet of how the curve bends.
+constexpr double kFirstStep = 0.25;
+/// How far off, in steps, the wall that ends a step may seem along the tangent.
+constexpr double kMostBeyond = 2;
+/// A curve ends at a pole or a tangency that is so near the last point that could be reached, mm.
+constexpr double kEndRoom = 100 * kLeastStep;
 constexpr double kMostTurn = 0.9;  ///< cosine of the angle that a segment may turn by
 /// Rates across a wall below this (rad) are those of a curve that runs along it.
 constexpr double kAlong = 1e-9;
@@ -46,17 +52,6 @@ CrossingPoint turned(CrossingPoint point) {
 }
 
 }  // namespace
-
-CrossingSegment::CrossingSegment(const CrossingPoint& from, const CrossingPoint& to)
-    : length_((to.point() - from.point()).norm()),
-      control_points_{from.at, from.at + length_ / 3 * from.rate, to.at - length_ / 3 * to.rate,
-                      to.at} {}
-
-CrossingSegment::Vector CrossingSegment::at(double x) const {
-  const double y = 1 - x;
-  return y * y * y * control_points_[0] + 3 * x * y * y * control_points_[1] +
-         3 * x * x * y * control_points_[2] + x * x * x * control_points_[3];
-}
 
 CrossingWalk::CrossingWalk(const SurfaceIndex& first, const SurfaceIndex& second, double tolerance)
     : surfaces_{&first, &second}, tolerance_(tolerance) {
@@ -83,7 +78,8 @@ CrossingWalk::Pieces CrossingWalk::pieces_at(const CrossingPlace& place) const {
   for (std::size_t k = 0; k < 4; ++k) {
     const auto& walls = directions_[k].walls;
     const double x = place[static_cast<Eigen::Index>(k)];
-    while (out[k] + 2 < walls.size() && walls[out[k] + 1] <= x) ++out[k];
+    const auto next = std::upper_bound(walls.begin() + 1, walls.end() - 1, x);
+    out[k] = static_cast<std::size_t>(next - walls.begin()) - 1;
   }
   return out;
 }
@@ -99,7 +95,7 @@ double CrossingWalk::span_length(std::size_t direction, std::size_t piece, doubl
   return values[at + 1] - values[at];
 }
 
-CrossingWalk::Pair CrossingWalk::jets(const CrossingPlace& place, const Pieces& pieces) const {
+CrossingJets CrossingWalk::jets(const CrossingPlace& place, const Pieces& pieces) const {
   const auto jet = [&](std::size_t k) {
     const Vector2d at = place.segment<2>(static_cast<Eigen::Index>(k));
     return surfaces_[k / 2]->evaluator().jet_in_spans(
@@ -111,7 +107,7 @@ CrossingWalk::Pair CrossingWalk::jets(const CrossingPlace& place, const Pieces& 
 /// The point of the curve in a place where both surfaces are, with the tangent n_1 x n_2.
 std::optional<CrossingPoint> CrossingWalk::point_at(const CrossingPlace& place,
                                                     const Pieces& pieces) const {
-  const Pair pair = jets(place, pieces);
+  const CrossingJets pair = jets(place, pieces);
   const auto n1 = normal(pair.first);
   const auto n2 = normal(pair.second);
   if (!n1 || !n2) return std::nullopt;
@@ -127,7 +123,7 @@ std::optional<CrossingPoint> CrossingWalk::point_at(const CrossingPlace& place,
 }
 
 double CrossingWalk::sine_at(const CrossingPlace& place) const {
-  const Pair pair = jets(place, pieces_at(place));
+  const CrossingJets pair = jets(place, pieces_at(place));
   const auto n1 = normal(pair.first);
   const auto n2 = normal(pair.second);
   return n1 && n2 ? n1->cross(*n2).norm() : 0.0;
@@ -139,10 +135,13 @@ std::optional<CrossingWalk::Edge> CrossingWalk::edge_along(const CrossingBranch&
     const double room = kOnEdge * (walls.back() - walls.front());
     for (const bool upper : {false, true}) {
       const double end = upper ? walls.back() : walls.front();
-      const auto there = [&](const CrossingPoint& p) {
-        return std::abs(p.at[3 + k] - end) <= room;
+      const auto there = [&](const CrossingSegment& segment) {
+        return std::abs(segment.at(0)[3 + k] - end) <= room &&
+               std::abs(segment.at(1)[3 + k] - end) <= room;
       };
-      if (std::all_of(branch.points.begin(), branch.points.end(), there)) return Edge{k, upper};
+      if (std::all_of(branch.segments.begin(), branch.segments.end(), there)) {
+        return Edge{k, upper};
+      }
     }
   }
   return std::nullopt;
@@ -153,12 +152,12 @@ bool CrossingWalk::settle(CrossingPlace& place, const Pieces& pieces, const Slic
   CrossingPlace x = place;
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMostSettlings; ++i) {
-    const Pair pair = jets(x, pieces);
+    const CrossingJets pair = jets(x, pieces);
     Matrix4d m;
-    m.topRows<3>() << pair.first.du, pair.first.dv, -pair.second.du, -pair.second.dv;
+    m.topRows<3>() = pair.jacobian();
     const Vector4d lengths = m.topRows<3>().colwise().norm();
     Vector4d r;
-    r.head<3>() = pair.second.point - pair.first.point;
+    r.head<3>() = pair.gap();
     if (slice.fixed >= 0) {
       m.row(3).setZero();
       m(3, slice.fixed) = lengths[slice.fixed];
@@ -191,7 +190,7 @@ bool CrossingWalk::settle(CrossingPlace& place, const Pieces& pieces, const Slic
 
 /// |S_u| and |S_v| of both surfaces.
 Vector4d CrossingWalk::speeds(const CrossingPlace& place, const Pieces& pieces) const {
-  const Pair pair = jets(place, pieces);
+  const CrossingJets pair = jets(place, pieces);
   return {pair.first.du.norm(), pair.first.dv.norm(), pair.second.du.norm(), pair.second.dv.norm()};
 }
 
@@ -208,9 +207,13 @@ CrossingPlace CrossingWalk::margins(const CrossingPlace& place, const Pieces& pi
   return out;
 }
 
-double CrossingWalk::wall(int direction, bool upper, const Pieces& pieces) const {
-  const auto k = static_cast<std::size_t>(direction);
-  return directions_[k].walls[pieces[k] + (upper ? 1 : 0)];
+/// The lower or the upper ends of the pieces.
+CrossingPlace CrossingWalk::walls(bool upper, const Pieces& pieces) const {
+  CrossingPlace out;
+  for (std::size_t k = 0; k < 4; ++k) {
+    out[static_cast<Eigen::Index>(k)] = directions_[k].walls[pieces[k] + (upper ? 1 : 0)];
+  }
+  return out;
 }
 
 /// The parameter that is furthest beyond its walls, in parts of the distance between them.
@@ -219,12 +222,12 @@ std::optional<int> CrossingWalk::wall_beyond(const CrossingPlace& place,
                                              const Pieces& pieces) const {
   std::optional<int> out;
   double furthest = 0;
+  const CrossingPlace low = walls(false, pieces);
+  const CrossingPlace high = walls(true, pieces);
   for (int k = 0; k < 4; ++k) {
-    const double low = wall(k, false, pieces);
-    const double high = wall(k, true, pieces);
-    const double beyond = std::max(low - place[k], place[k] - high);
-    if (beyond > margins[k] && beyond > furthest * (high - low)) {
-      furthest = beyond / (high - low);
+    const double beyond = std::max(low[k] - place[k], place[k] - high[k]);
+    if (beyond > margins[k] && beyond > furthest * (high[k] - low[k])) {
+      furthest = beyond / (high[k] - low[k]);
       out = k;
     }
   }
@@ -241,11 +244,13 @@ double CrossingWalk::longest_step(const CrossingPoint& from, const Pieces& piece
 }
 
 /// The next point at about this distance, or where the curve meets a wall before it.
-std::optional<CrossingPoint> CrossingWalk::step(const CrossingPoint& from, const Pieces& pieces,
-                                                double length) const {
+std::optional<CrossingPoint> CrossingWalk::next_point(const CrossingPoint& from,
+                                                      const Pieces& pieces, double length) const {
   const CrossingPlace start = from.place();
   const CrossingPlace rate = from.rate.tail<4>();
   const CrossingPlace room = margins(start, pieces);
+  const CrossingPlace low = walls(false, pieces);
+  const CrossingPlace high = walls(true, pieces);
   CrossingPlace place = start + length * rate;
   std::optional<int> beyond = wall_beyond(place, room, pieces);
   if (!beyond) {
@@ -253,23 +258,18 @@ std::optional<CrossingPoint> CrossingWalk::step(const CrossingPoint& from, const
     if (!settle(place, pieces, ahead)) return std::nullopt;
     beyond = wall_beyond(place, room, pieces);
   }
-  for (int tries = 0; beyond && tries < 4; ++tries) {
+  for (int tries = 0; beyond && tries < 4; ++tries) {  // each parameter may have its wall
     const int k = *beyond;
-    const double end = wall(k, rate[k] > 0, pieces);
+    const double end = rate[k] > 0 ? high[k] : low[k];
     const double part = rate[k] != 0 ? (end - start[k]) / (length * rate[k]) : 0.0;
-    if (!(part >= 0 && part <= 2)) return std::nullopt;
+    if (!(part >= 0 && part <= kMostBeyond)) return std::nullopt;
     place = start + part * length * rate;
     place[k] = end;
     if (!settle(place, pieces, {k, {}, {}})) return std::nullopt;
     beyond = wall_beyond(place, room, pieces);
   }
   if (beyond) return std::nullopt;
-  for (int k = 0; k < 4; ++k) {
-    const double low = wall(k, false, pieces);
-    const double high = wall(k, true, pieces);
-    place[k] = std::clamp(place[k], low, high);
-  }
-  auto next = point_at(place, pieces);
+  auto next = point_at(place.cwiseMax(low).cwiseMin(high), pieces);
   if (!next) return std::nullopt;
   if (next->direction().dot(from.direction()) < 0) next = turned(*next);
   if (!(next->direction().dot(from.direction()) >= kMostTurn)) return std::nullopt;
@@ -277,11 +277,17 @@ std::optional<CrossingPoint> CrossingWalk::step(const CrossingPoint& from, const
   return next;
 }
 
+/// Within the pieces: outside, the surfaces may be others.
+CrossingSegment CrossingWalk::segment_between(const CrossingPoint& from, const CrossingPoint& to,
+                                              const Pieces& pieces) const {
+  return {from, to, walls(false, pieces), walls(true, pieces)};
+}
+
 double CrossingWalk::deviation_of(const CrossingSegment& segment, const Pieces& pieces) const {
   double out = 0;
   for (const double x : {0.25, 0.5, 0.75}) {
     const CrossingSegment::Vector at = segment.at(x);
-    const Pair pair = jets(at.tail<4>(), pieces);
+    const CrossingJets pair = jets(at.tail<4>(), pieces);
     for (const SurfaceJet* jet : {&pair.first, &pair.second}) {
       const double off = (jet->point - at.head<3>()).norm();
       if (!std::isfinite(off)) return std::numeric_limits<double>::infinity();
@@ -293,65 +299,74 @@ double CrossingWalk::deviation_of(const CrossingSegment& segment, const Pieces& 
 
 /// A step of at most `length`, shorter until its segment is good enough; `length` becomes what the
 /// next step may be.
-std::optional<CrossingPoint> CrossingWalk::advance(const CrossingPoint& from, const Pieces& pieces,
-                                                   double& length, double& deviation) const {
+std::optional<CrossingWalk::Step> CrossingWalk::advance(const CrossingPoint& from,
+                                                        const Pieces& pieces,
+                                                        double& length) const {
   length = std::min(length, longest_step(from, pieces));
-  while (length >= kLeastStep) {
-    auto next = step(from, pieces, length);
-    double off = std::numeric_limits<double>::infinity();
-    double chord = 0;
-    if (next) {
-      const CrossingSegment segment(from, *next);
-      off = deviation_of(segment, pieces);
-      chord = segment.length();
-    }
-    if (!(off <= tolerance_)) {
-      length *= 0.5;
-      continue;
-    }
-    deviation = std::max(deviation, off);
+  for (; length >= kLeastStep; length *= 0.5) {
+    const auto next = next_point(from, pieces, length);
+    if (!next) continue;
+    const CrossingSegment segment = segment_between(from, *next, pieces);
+    const double off = deviation_of(segment, pieces);
+    if (!(off <= tolerance_)) continue;
     // Deviations grow with the fourth power of the length.
     constexpr double kMostGrowth = 2;
     constexpr double kCaution = 0.9;
     const double growth = off > 0 ? kCaution * std::pow(tolerance_ / off, 0.25) : kMostGrowth;
-    length = std::max(0.5 * length, std::min(growth, kMostGrowth) * chord);
-    return next;
+    length = std::max(0.5 * length, std::min(growth, kMostGrowth) * segment.length());
+    return Step{*next, segment, off};
   }
   return std::nullopt;
 }
 
-/// Whether the curve goes on: into the next pieces where it has come to a wall that is not the
-/// surface's edge.
-bool CrossingWalk::pass_walls(std::vector<CrossingPoint>& points, Pieces& pieces) const {
-  constexpr int kMostWalls = 8;
+/// Leads a curve that has come to a wall into the next pieces, unless it ends there.
+std::optional<WalkEnd> CrossingWalk::pass_walls(CrossingPoint& here, Pieces& pieces) const {
+  constexpr int kMostWalls = 8;  // of all four parameters, in one place
   for (int tries = 0; tries < kMostWalls; ++tries) {
-    const CrossingPoint here = points.back();
     const CrossingPlace room = margins(here.place(), pieces);
     int through = -1;
     bool upper = false;
-    for (int k = 0; k < 4; ++k) {
+    double end = 0;
+    for (int k = 0; k < 4 && through < 0; ++k) {
       const double rate = here.rate[3 + k];
       upper = rate > 0;
-      const bool at_wall = std::abs(here.at[3 + k] - wall(k, upper, pieces)) <= room[k];
-      if (at_wall && std::abs(rate) * kGeometric > kAlong * room[k]) {
-        through = k;
-        break;
-      }
+      end = walls(upper, pieces)[k];
+      const bool at_wall = std::abs(here.at[3 + k] - end) <= room[k];
+      if (at_wall && std::abs(rate) * kGeometric > kAlong * room[k]) through = k;
     }
-    if (through < 0) return true;
+    if (through < 0) return std::nullopt;
     const auto k = static_cast<std::size_t>(through);
-    if (upper ? pieces[k] + 2 == directions_[k].walls.size() : pieces[k] == 0) return false;
+    if (upper ? pieces[k] + 2 == directions_[k].walls.size() : pieces[k] == 0) {
+      return WalkEnd::kEdge;
+    }
     CrossingPlace place = here.place();
-    place[through] = wall(through, upper, pieces);
+    place[through] = end;
     pieces[k] += upper ? 1 : std::size_t(-1);
+    if (jets(place, pieces).gap().norm() > kLeastStep) return WalkEnd::kBreak;
     auto next = point_at(place, pieces);
-    if (!next) return false;
-    if ((next->point() - here.point()).norm() > kLeastStep) return false;  // a break
+    if (!next) return end_near(here.place(), pieces);
     if ((next->rate[3 + through] > 0) != upper) next = turned(*next);
     constexpr double kSameRate = 1e-9;
-    if ((next->rate - here.rate).norm() > kSameRate * here.rate.norm()) points.push_back(*next);
+    if ((next->rate - here.rate).norm() > kSameRate * here.rate.norm()) here = *next;
   }
-  return false;
+  return WalkEnd::kCutOff;
+}
+
+/// Why no step leads on from a place: it is at a pole, or where the surfaces are tangent.
+WalkEnd CrossingWalk::end_near(const CrossingPlace& last, const Pieces& pieces) const {
+  const CrossingPlace low = walls(false, pieces);
+  const CrossingPlace high = walls(true, pieces);
+  for (int k = 0; k < 4; ++k) {
+    for (const double edge : {low[k], high[k]}) {
+      CrossingPlace place = last;
+      const double off = std::abs(place[k] - edge) * speeds(place, pieces)[k];
+      place[k] = edge;
+      const int along = k ^ 1;  // the surface's other parameter
+      const double length = speeds(place, pieces)[along] * (high[along] - low[along]);
+      if (off <= kEndRoom && length <= kGeometric) return WalkEnd::kEdge;
+    }
+  }
+  return tangency_near(last, kEndRoom) ? WalkEnd::kTangency : WalkEnd::kCutOff;
 }
 
 bool CrossingWalk::leads_through(const CrossingSegment& segment, double x,
@@ -367,31 +382,32 @@ bool CrossingWalk::leads_through(const CrossingSegment& segment, double x,
   return off.maxCoeff() <= kSamePlace;
 }
 
-/// From the last of `points` to the curve's end; whether it came back to that point.
-bool CrossingWalk::walk(std::vector<CrossingPoint>& points, Pieces pieces,
-                        double& deviation) const {
-  const CrossingPoint start = points.back();
-  double length = 0.25 * longest_step(start, pieces);
-  for (std::size_t segments = 0; segments < kMostPoints; ++segments) {
-    if (!pass_walls(points, pieces)) return false;
-    const CrossingPoint from = points.back();
-    const auto next = advance(from, pieces, length, deviation);
-    if (!next) return false;
-    if (segments > 0) {
-      const CrossingSegment segment(from, *next);
-      const Vector3d chord = next->point() - from.point();
-      const double x = (start.point() - from.point()).dot(chord) / chord.squaredNorm();
+/// Appends the segments from a point to the curve's end.
+WalkEnd CrossingWalk::walk(const CrossingPoint& start, std::vector<CrossingSegment>& segments,
+                           double& deviation) const {
+  Pieces pieces = pieces_at(start.place());
+  CrossingPoint here = start;
+  double length = kFirstStep * longest_step(start, pieces);
+  while (segments.size() < kMostSegments) {
+    if (const auto end = pass_walls(here, pieces)) return *end;
+    const auto next = advance(here, pieces, length);
+    if (!next) return end_near(here.place(), pieces);
+    if (!segments.empty()) {
+      const Vector3d chord = next->to.point() - here.point();
+      const double x = (start.point() - here.point()).dot(chord) / chord.squaredNorm();
       const bool passes = x > 0 && x <= 1 && start.direction().dot(chord) > 0 &&
-                          (segment.at(x).head<3>() - start.point()).norm() <= 10 * tolerance_;
-      if (passes && leads_through(segment, x, start.place())) {
-        deviation = std::max(deviation, deviation_of(CrossingSegment(from, start), pieces));
-        points.push_back(start);
-        return true;
+                          (next->segment.at(x).head<3>() - start.point()).norm() <= curve_room();
+      if (passes && leads_through(next->segment, x, start.place())) {
+        segments.push_back(segment_between(here, start, pieces));
+        deviation = std::max(deviation, deviation_of(segments.back(), pieces));
+        return WalkEnd::kLoop;
       }
     }
-    points.push_back(*next);
+    segments.push_back(next->segment);
+    deviation = std::max(deviation, next->deviation);
+    here = next->to;
   }
-  return false;
+  return WalkEnd::kCutOff;
 }
 
 std::optional<CrossingPoint> CrossingWalk::settled(const CrossingPlace& place) const {
@@ -400,25 +416,25 @@ std::optional<CrossingPoint> CrossingWalk::settled(const CrossingPlace& place) c
   if (!near) return std::nullopt;
   CrossingPlace found = place;
   if (!settle(found, pieces, {-1, near->point(), near->direction()})) return std::nullopt;
-  for (int k = 0; k < 4; ++k) {
-    found[k] = std::clamp(found[k], wall(k, false, pieces), wall(k, true, pieces));
-  }
-  return point_at(found, pieces);
+  return point_at(found.cwiseMax(walls(false, pieces)).cwiseMin(walls(true, pieces)), pieces);
+}
+
+WalkEnd CrossingWalk::end_near(const CrossingPlace& place) const {
+  return end_near(place, pieces_at(place));
 }
 
 CrossingBranch CrossingWalk::branch_through(const CrossingPoint& start) const {
-  const Pieces pieces = pieces_at(start.place());
   CrossingBranch out;
-  out.points = {start};
-  out.is_closed = walk(out.points, pieces, out.deviation);
-  if (out.is_closed) return out;
-  std::vector<CrossingPoint> before = {turned(start)};
-  walk(before, pieces, out.deviation);
-  std::vector<CrossingPoint> points;
-  points.reserve(before.size() + out.points.size());
-  for (std::size_t i = before.size(); i-- > 1;) points.push_back(turned(before[i]));
-  points.insert(points.end(), out.points.begin(), out.points.end());
-  out.points = std::move(points);
+  std::vector<CrossingSegment> after;
+  out.ends[1] = walk(start, after, out.deviation);
+  if (out.is_closed()) {
+    out.ends[0] = WalkEnd::kLoop;
+  } else {
+    out.ends[0] = walk(turned(start), out.segments, out.deviation);
+    std::reverse(out.segments.begin(), out.segments.end());
+    for (CrossingSegment& segment : out.segments) segment = segment.reversed();
+  }
+  out.segments.insert(out.segments.end(), after.begin(), after.end());
   return out;
 }
 
@@ -431,12 +447,11 @@ std::optional<CrossingWalk::Tangency> CrossingWalk::tangency_near(const Crossing
   plane << n->unitOrthogonal(), n->cross(n->unitOrthogonal());
   // In the tangent plane: the gap, and how much the normals differ.
   const auto differences = [&](const CrossingPlace& at) -> Vector4d {
-    const Pair pair = jets(at, pieces);
+    const CrossingJets pair = jets(at, pieces);
     const Vector3d n1 = normal(pair.first).value_or(Vector3d::Zero());
     const Vector3d n2 = normal(pair.second).value_or(Vector3d::Zero());
     Vector4d out;
-    out << plane.transpose() * (pair.second.point - pair.first.point),
-        plane.transpose() * n1.cross(n2);
+    out << plane.transpose() * pair.gap(), plane.transpose() * n1.cross(n2);
     return out;
   };
   const Vector4d per_unit = speeds(place, pieces);
@@ -466,10 +481,8 @@ std::optional<CrossingWalk::Tangency> CrossingWalk::tangency_near(const Crossing
     x += move;
     if (!((x - place).cwiseAbs().cwiseProduct(per_unit).maxCoeff() < reach)) return std::nullopt;
     if (move.cwiseAbs().cwiseProduct(per_unit).maxCoeff() < kGeometric) {
-      const Pair pair = jets(x, pieces);
-      if (wall_beyond(x, margins(x, pieces), pieces) ||
-          (pair.second.point - pair.first.point).norm() > 10 * kGeometric)
-        break;
+      const CrossingJets pair = jets(x, pieces);
+      if (wall_beyond(x, margins(x, pieces), pieces) || pair.gap().norm() > kNear) break;
       return Tangency{x, solver.rank() == 4};
     }
   }

@@ -1,17 +1,14 @@
 #include "modeler/surface/known_crossing.hpp"
 
-#include <cstddef>
 #include <utility>
 
 namespace limn {
 
 KnownCrossing::KnownCrossing(CrossingBranch found) : branch_(std::move(found)) {
-  for (std::size_t i = 0; i + 1 < branch_.points.size(); ++i) {
-    const CrossingSegment segment(branch_.points[i], branch_.points[i + 1]);
+  for (const CrossingSegment& segment : branch_.segments) {
     const auto& points = segment.control_points();
     low_.push_back(points[0].cwiseMin(points[1]).cwiseMin(points[2]).cwiseMin(points[3]));
     high_.push_back(points[0].cwiseMax(points[1]).cwiseMax(points[2]).cwiseMax(points[3]));
-    segments_.push_back(segment);
     length_ += segment.length();
   }
 }

@@ -27,12 +27,12 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 constexpr int kMostPairs = 300'000;
-constexpr std::size_t kMostTogether = 40'000;  ///< pairs of parts that run together
-constexpr std::size_t kMostPoints = 300'000;   ///< of all curves
+constexpr std::size_t kMostTogether = 40'000;   ///< pairs of parts that run together
+constexpr std::size_t kMostSegments = 300'000;  ///< of all curves
 /// Parts that are flat to this (mm), and neither apart nor transversal, run together.
 constexpr double kFlat = 1e-7;
-/// Shorter curves are places; what is nearer to a curve is on it. mm
-constexpr double kNear = 10 * kGeometric;
+/// Knots nearer than this part of a curve's length are one.
+constexpr double kSameKnot = 1e-12;
 
 /// The direction in which to halve a part: to flatten it, unless it is much longer the other way,
 /// which spoils the bounds of rational parts.
@@ -167,7 +167,7 @@ class CrossingSearch {
   std::vector<std::array<int, 2>> running_together_;  ///< parts that do, or seem to
   std::vector<Tangency> tangencies_;
   int pairs_ = 0;
-  std::size_t points_ = 0;
+  std::size_t segments_ = 0;
   bool complete_ = true;
 };
 
@@ -303,7 +303,7 @@ std::vector<Stretch> CrossingSearch::uncovered(const CrossingCell& cell,
 
 bool CrossingSearch::is_known(const CrossingPlace& place, const Vector3d& point) const {
   return std::any_of(known_.begin(), known_.end(), [&](const KnownCrossing& known) {
-    return known.any_near(point, 10 * tolerance_, [&](const CrossingSegment& segment, double x) {
+    return known.any_near(point, walk_.curve_room(), [&](const CrossingSegment& segment, double x) {
       return walk_.leads_through(segment, x, place);
     });
   });
@@ -314,12 +314,12 @@ bool CrossingSearch::is_known(const CrossingPlace& place, const Vector3d& point)
 void CrossingSearch::follow(const CrossingPlace& place, double reach) {
   if (const auto start = walk_.settled(place)) {
     if (is_known(start->place(), start->point())) return;
-    if (points_ > kMostPoints) {
+    if (segments_ > kMostSegments) {
       complete_ = false;
       return;
     }
     KnownCrossing found(walk_.branch_through(*start));
-    points_ += found.branch().points.size();
+    segments_ += found.branch().segments.size();
     if (found.length() > kNear) {
       known_.push_back(std::move(found));
       return;
@@ -348,9 +348,10 @@ bool CrossingSearch::is_seam(const KnownCrossing& one, const KnownCrossing& othe
       edge->upper == opposite->upper)
     return false;
   return std::all_of(
-      one.branch().points.begin(), one.branch().points.end(), [&](const CrossingPoint& p) {
-        return other.any_near(p.point(), tolerance_, [&](const CrossingSegment& segment, double x) {
-          return (segment.at(x).head<3>() - p.point()).norm() <= 10 * tolerance_;
+      one.branch().segments.begin(), one.branch().segments.end(), [&](const CrossingSegment& side) {
+        const Vector3d point = side.at(1).head<3>();
+        return other.any_near(point, tolerance_, [&](const CrossingSegment& segment, double x) {
+          return (segment.at(x).head<3>() - point).norm() <= walk_.curve_room();
         });
       });
 }
@@ -464,31 +465,38 @@ std::vector<SurfaceTouch> CrossingSearch::touches() const {
   return out;
 }
 
+/// Whether the cubics through a joint, with their lengths as parameters, have one tangent there.
+bool is_smooth(const CrossingSegment& before, const CrossingSegment& after) {
+  constexpr double kSameRate = 1e-8;  // a little more than what the walk takes for no corner
+  const auto& p = before.control_points();
+  const auto& q = after.control_points();
+  const CrossingSegment::Vector rate = (p[3] - p[2]) / before.length();
+  const CrossingSegment::Vector next = (q[1] - q[0]) / after.length();
+  return (next - rate).norm() <= kSameRate * rate.norm();
+}
+
 /// The three curves of a branch; none where its knots can't be told apart. Knots are double where
 /// segments meet, so that tangents agree, and triple at corners.
 std::optional<SurfaceCrossing> crossing_of(const CrossingBranch& branch) {
   std::vector<double> knots(4, 0.0);
-  std::vector<CrossingSegment::Vector> points = {branch.points.front().at};
+  std::vector<CrossingSegment::Vector> points = {branch.segments.front().control_points()[0]};
   double at = 0;
-  bool at_corner = false;
-  for (std::size_t i = 0; i + 1 < branch.points.size(); ++i) {
-    const CrossingSegment segment(branch.points[i], branch.points[i + 1]);
+  const CrossingSegment* before = nullptr;
+  for (const CrossingSegment& segment : branch.segments) {
     // A step to a knot may be too short for one of its own.
-    if (segment.length() <= std::max(kGeometric, 1e-12 * at)) {
-      at_corner = true;
-      continue;
-    }
-    if (at > 0) {
-      knots.insert(knots.end(), at_corner ? 3 : 2, at);
-      if (at_corner) points.push_back(segment.control_points()[0]);
+    if (segment.length() <= std::max(kGeometric, kSameKnot * at)) continue;
+    if (before != nullptr) {
+      const bool smooth = is_smooth(*before, segment);
+      knots.insert(knots.end(), smooth ? 2 : 3, at);
+      if (!smooth) points.push_back(segment.control_points()[0]);
     }
     points.push_back(segment.control_points()[1]);
     points.push_back(segment.control_points()[2]);
     at += segment.length();
-    at_corner = false;
+    before = &segment;
   }
   knots.insert(knots.end(), 4, at);
-  points.push_back(branch.points.back().at);
+  points.push_back(branch.segments.back().control_points()[3]);
   const auto knot_vector = KnotVector::make(3, std::move(knots));
   if (!knot_vector) return std::nullopt;
   std::vector<Vector3d> in_space;
@@ -504,7 +512,7 @@ std::optional<SurfaceCrossing> crossing_of(const CrossingBranch& branch) {
   auto second = BsplineCurve<2>::make(*knot_vector, on_second);
   if (!curve || !first || !second) return std::nullopt;
   return SurfaceCrossing{*std::move(curve), *std::move(first), *std::move(second), branch.deviation,
-                         branch.is_closed};
+                         branch.is_closed()};
 }
 
 SurfaceCrossings CrossingSearch::run() {

@@ -13,7 +13,8 @@ namespace limn {
 ///     |S_1(on_first(t)) - curve(t)| and |S_2(on_second(t)) - curve(t)| are at most about
 ///     `deviation`,
 ///
-/// which is the largest of them in three places of each span.
+/// which is the largest of them in three places of each span. All control points of on_first and
+/// on_second lie in the surfaces' domains.
 struct SurfaceCrossing {
   BsplineCurve<3> curve;
   BsplineCurve<2> on_first;   ///< (u, v)
@@ -30,7 +31,7 @@ struct SurfaceTouch {
   Eigen::Vector3d point;  ///< one of the set
   Eigen::Vector2d on_first;
   Eigen::Vector2d on_second;
-  double extent = 0;  ///< mm, about how long or wide the set is; 0 for a single place
+  double extent = 0;  ///< mm, about how long or wide the set is; 0 for one isolated place
 };
 
 struct SurfaceCrossings {

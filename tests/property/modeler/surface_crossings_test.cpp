@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "modeler/surface/measures.hpp"
 #include "modeler/surface/primitives.hpp"
 #include "tests/peers/occt_peer.hpp"
 #include "tests/peers/random_surfaces.hpp"
+#include "tests/property/modeler/crossing_checks.hpp"
 #include "tests/support/for_all.hpp"
 #include "tests/support/peer_conversion.hpp"
 
@@ -27,63 +27,21 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double kTolerance = 1e-4;  // mm
-
-Frame frame_at(const Vector3d& origin, const Vector3d& x = Vector3d::UnitX(),
-               const Vector3d& y = Vector3d::UnitY()) {
-  return {origin, x, y, x.cross(y)};
-}
-
-/// A square about `middle` along x and y.
-BsplineSurface square(const Vector3d& middle, double side, const Vector3d& x = Vector3d::UnitX(),
-                      const Vector3d& y = Vector3d::UnitY()) {
-  return *make_plane(frame_at(middle - 0.5 * side * (x + y), x, y), side, side);
-}
-
-BsplineSurface ball(const Vector3d& middle, double radius) {
-  return *make_sphere(frame_at(middle), radius);
-}
+using test::ball;
+using test::cross;
+using test::expect_length;
+using test::expect_on_both;
+using test::frame_at;
+using test::kTolerance;
+using test::on;
+using test::square;
+using test::total_length;
 
 /// About the z axis, or about the x axis through `middle`.
 BsplineSurface tube(double radius) { return *make_cylinder(frame_at({0, 0, -10}), radius, 20); }
 BsplineSurface tube_along_x(const Vector3d& middle, double radius) {
   const Frame frame = frame_at(middle - Vector3d(10, 0, 0), Vector3d::UnitY(), Vector3d::UnitZ());
   return *make_cylinder(frame, radius, 20);
-}
-
-Vector3d on(const BsplineSurface& surface, const Vector2d& at) {
-  return surface.point({at.x(), at.y()});
-}
-
-SurfaceCrossings cross(const BsplineSurface& first, const BsplineSurface& second) {
-  return cross_surfaces(SurfaceIndex(first), SurfaceIndex(second), kTolerance);
-}
-
-double total_length(const SurfaceCrossings& found) {
-  double sum = 0;
-  for (const SurfaceCrossing& c : found.curves) sum += arc_length(c.curve, 1e-9).value;
-  return sum;
-}
-
-/// The three curves agree within what is said, and tangents with t as arc length.
-void expect_on_both(const SurfaceCrossing& crossing, const BsplineSurface& first,
-                    const BsplineSurface& second) {
-  EXPECT_LE(crossing.deviation, kTolerance);
-  const double room = 1.5 * crossing.deviation + 1e-9;  // found in three places of a span
-  const std::vector<double> ends = crossing.curve.knots().breakpoints();
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    for (const double part : {0.0, 0.15, 0.4, 0.6, 0.85}) {
-      const double t = ends[i] + part * (ends[i + 1] - ends[i]);
-      const Vector3d point = crossing.curve.point(t);
-      EXPECT_LE((on(first, crossing.on_first.point(t)) - point).norm(), room);
-      EXPECT_LE((on(second, crossing.on_second.point(t)) - point).norm(), room);
-    }
-  }
-  const auto closes = [](const auto& curve) {
-    const KnotVector& knots = curve.knots();
-    return (curve.point(knots.domain_begin()) - curve.point(knots.domain_end())).norm() < 1e-12;
-  };
-  EXPECT_EQ(crossing.is_closed, closes(crossing.on_first) && closes(crossing.on_second));
 }
 
 void expect_curves(const BsplineSurface& first, const BsplineSurface& second, std::size_t count,
@@ -233,6 +191,39 @@ TEST(CrossSurfaces, Tangent) {
 TEST(CrossSurfaces, SaysWhatItDoesNotKnow) {
   const BsplineSurface sphere = ball({0, 0, 0}, 5);
   EXPECT_FALSE(cross(sphere, sphere).complete);
+}
+
+/// A circle that nearly touches all four edges of a sheet: parameters stay in the domain.
+TEST(CrossSurfacesLaw, CurvesThatGrazeEdges) {
+  test::for_all(50, [](test::Rng& rng) {
+    const KnotVector knots = *KnotVector::make_clamped(2, -0.5, 0.5);
+    const std::array<double, 3> squares = {0.25, -0.25, 0.25};  // z = x^2 + y^2
+    std::vector<Vector3d> points;
+    for (std::size_t j = 0; j < 3; ++j) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        points.emplace_back(0.5 * (double(i) - 1), 0.5 * (double(j) - 1), squares[i] + squares[j]);
+      }
+    }
+    const double radius = 0.5 - std::pow(10, rng.uniform(-8.5, -2));  // beyond kGeometric
+    expect_length(*BsplineSurface::make({knots, knots}, points), square({0, 0, radius * radius}, 4),
+                  2 * pi * radius);
+  });
+}
+
+/// Neighbours that share an edge, in any frame: rounding may not lead the curve out of the domain.
+TEST(CrossSurfacesLaw, CurvesAlongEdges) {
+  test::for_all(50, [](test::Rng& rng) {
+    const auto any = [&rng] {
+      return Vector3d(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
+    };
+    const Vector3d x = any().normalized();
+    const Vector3d y = x.cross(any()).normalized();
+    const Vector3d z = x.cross(y);
+    const Vector3d origin = 10 * any();
+    expect_length(*make_plane(frame_at(origin, x, y), 10, 7),
+                  *make_plane(frame_at(origin, x, z), 10, 7), 10);
+    expect_length(*make_cylinder(frame_at(origin, x, y), 5, 10), square(origin, 20, x, y), 10 * pi);
+  });
 }
 
 TEST(CrossSurfaces, CornersOfSurfaces) {
