@@ -8,13 +8,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <optional>
 #include <utility>
 
 #include "input/base/expect.hpp"
 #include "modeler/base/tolerance.hpp"
 #include "modeler/surface/crossing_cell.hpp"
+#include "modeler/surface/crossing_touches.hpp"
 #include "modeler/surface/crossing_walk.hpp"
 #include "modeler/surface/known_crossing.hpp"
 
@@ -27,10 +27,18 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 constexpr int kMostPairs = 300'000;
+/// Curves that could not be followed to an end; more show that numbers are too large for it.
+constexpr int kMostCutOffs = 1000;
+/// Pairs of halves looked at to show that parts are apart which seemed to run together: in all, and
+/// of one pair. Parts that are kFlat and some kGeometric apart take a few hundred.
+constexpr int kMostLooks = 100'000;
+constexpr int kMostLooksAtPair = 500;
 constexpr std::size_t kMostTogether = 40'000;   ///< pairs of parts that run together
 constexpr std::size_t kMostSegments = 300'000;  ///< of all curves
 /// Parts that are flat to this (mm), and neither apart nor transversal, run together.
 constexpr double kFlat = 1e-7;
+/// The sine of the angle from which on a curve can be followed for certain.
+constexpr double kTransversal = 1e-4;
 /// Knots nearer than this part of a curve's length are one.
 constexpr double kSameKnot = 1e-12;
 
@@ -117,6 +125,9 @@ bool apart(const PatchBound& a, const PatchBound& b) {
   return boxes_apart(a.low, a.high, b.low, b.high) || apart_along(a, b) || apart_along(b, a);
 }
 
+/// Off the tangent plane, mm.
+double height_of(const PatchBound& bound) { return bound.frame_high.z() - bound.frame_low.z(); }
+
 /// A stretch of a cell's axis.
 struct Stretch {
   double low;
@@ -124,6 +135,16 @@ struct Stretch {
   double length() const { return high - low; }
   double middle() const { return low + 0.5 * (high - low); }
 };
+
+/// Whether the hierarchy's floats hold its boxes, and doubles the fourth powers of lengths that
+/// Newton's iterations take.
+bool is_within_numbers(const SurfaceIndex& index) {
+  constexpr double kFarthest = 1e30;  // mm
+  return std::all_of(index.leaves().begin(), index.leaves().end(), [](const PatchBound& leaf) {
+    const auto is_near = [](const Vector3d& x) { return x.cwiseAbs().maxCoeff() <= kFarthest; };
+    return leaf.low.allFinite() && leaf.high.allFinite() && is_near(leaf.low) && is_near(leaf.high);
+  });
+}
 
 class CrossingSearch {
  public:
@@ -138,14 +159,6 @@ class CrossingSearch {
     std::int32_t node;
     Eigen::AlignedBox<double, 3> box;
   };
-  /// A place where two parts run together.
-  struct Tangency {
-    CrossingPlace place;
-    Vector3d point;
-    double reach;
-    bool is_single;  ///< none beside it
-  };
-
   static Branching root_of(const SurfaceIndex& index);
   static std::vector<Branching> below(const SurfaceIndex& index, const Branching& at);
   void visit_nodes(const Branching& a, const Branching& b);
@@ -153,11 +166,13 @@ class CrossingSearch {
   bool cover(const CrossingCell& cell);
   std::vector<Stretch> uncovered(const CrossingCell& cell, const Stretch& stretch) const;
   bool is_known(const CrossingPlace& place, const Vector3d& point) const;
-  void follow(const CrossingPlace& place, double reach);
+  bool is_on_curve(const Vector3d& point) const;
+  bool follow(const CrossingPlace& place, double reach);
   bool is_seam(const KnownCrossing& one, const KnownCrossing& other) const;
-  void look_for_touch(const PatchBound& a, const PatchBound& b);
-  void add_tangency(const CrossingPlace& place, double reach, bool is_single);
-  std::vector<SurfaceTouch> touches() const;
+  bool are_apart(int a, int b, int& looks);
+  bool is_beside_curve(const PatchBound& a, const PatchBound& b) const;
+  bool find_meeting(const PatchBound& a, const PatchBound& b);
+  void add_meeting(const CrossingPlace& place, double reach);
 
   Parts first_;
   Parts second_;
@@ -165,8 +180,10 @@ class CrossingSearch {
   CrossingWalk walk_;
   std::vector<KnownCrossing> known_;
   std::vector<std::array<int, 2>> running_together_;  ///< parts that do, or seem to
-  std::vector<Tangency> tangencies_;
+  std::vector<MeetingPlace> meetings_;
   int pairs_ = 0;
+  int cut_offs_ = 0;
+  int looks_ = kMostLooks;  ///< that are left
   std::size_t segments_ = 0;
   bool complete_ = true;
 };
@@ -201,6 +218,7 @@ void CrossingSearch::visit_nodes(const Branching& a, const Branching& b) {
 }
 
 void CrossingSearch::visit(int a, int b) {
+  if (cut_offs_ > kMostCutOffs) return;
   const PatchBound& one = first_.bound(a);
   const PatchBound& other = second_.bound(b);
   if (apart(one, other)) return;
@@ -210,17 +228,15 @@ void CrossingSearch::visit(int a, int b) {
     complete_ = false;
     return;
   }
-  const auto height = [](const PatchBound& bound) {
-    return bound.frame_high.z() - bound.frame_low.z();
-  };
-  const bool flat = height(one) <= kFlat;
-  const bool other_flat = height(other) <= kFlat;
+  const bool flat = height_of(one) <= kFlat;
+  const bool other_flat = height_of(other) <= kFlat;
   // Flat parts may cross, and only their parameters turn: then they are halved on. Tangent planes
   // of parts that run together differ by no more than the parts bend.
   constexpr double kBends = 8;          // how a parabola's slope goes with its height
   constexpr double kLeastAngle = 1e-9;  // rad
   const double sine = one.frame.col(2).cross(other.frame.col(2)).norm();
-  const double bends = kBends * (height(one) + height(other)) / std::min(one.reach, other.reach);
+  const double bends =
+      kBends * (height_of(one) + height_of(other)) / std::min(one.reach, other.reach);
   const bool together = flat && other_flat && !(sine > bends + kLeastAngle);
   const bool is_small = std::min(one.reach, other.reach) <= kFlat;
   // The one that bends more.
@@ -246,7 +262,8 @@ void CrossingSearch::visit(int a, int b) {
 bool CrossingSearch::cover(const CrossingCell& cell) {
   constexpr int kMostQuestions = 100;
   constexpr double kShortest = 1e-6;
-  constexpr double kEdge = 1e-9;  // neighbours share their edges
+  constexpr double kBesideAnswer = 0.01;  // the curve leads through here, however far it was known
+  constexpr double kEdge = 1e-9;          // neighbours share their edges
   std::vector<Stretch> open = {{-1, 1}};
   int questions = 0;
   while (!open.empty()) {
@@ -260,8 +277,8 @@ bool CrossingSearch::cover(const CrossingCell& cell) {
       const bool solved = cell.solve(c, x);
       double gap = 0;
       if (solved && x.cwiseAbs().maxCoeff() <= 1 + kEdge) {
-        follow(cell.place(x.cwiseMax(-1.0).cwiseMin(1.0)), 0);
-        gap = 0.01;  // it leads through here, whatever becomes of it
+        if (!follow(cell.place(x.cwiseMax(-1.0).cwiseMin(1.0)), 0)) return true;
+        gap = kBesideAnswer;
       } else if (cell.excludes(c, 0.5 * stretch.length(),
                                solved ? x : Vector4d(Vector4d::Zero()))) {
         continue;
@@ -309,35 +326,50 @@ bool CrossingSearch::is_known(const CrossingPlace& place, const Vector3d& point)
   });
 }
 
-/// The branch through a place where the surfaces meet, unless it is known; a tangency where there
-/// is none.
-void CrossingSearch::follow(const CrossingPlace& place, double reach) {
-  if (const auto start = walk_.settled(place)) {
-    if (is_known(start->place(), start->point())) return;
-    if (segments_ > kMostSegments) {
-      complete_ = false;
-      return;
-    }
-    KnownCrossing found(walk_.branch_through(*start));
-    segments_ += found.branch().segments.size();
-    if (found.length() > kNear) {
-      known_.push_back(std::move(found));
-      return;
-    }
-  }
-  add_tangency(place, reach, true);
-}
-
-/// Where curves lead through, the surfaces may be tangent, or one may have a pole: no touch.
-void CrossingSearch::add_tangency(const CrossingPlace& place, double reach, bool is_single) {
-  const Vector3d point = first_.index().surface().point({place[0], place[1]});
+/// Whether a point is on a curve that is known: there the surfaces may be tangent, or one may have
+/// a pole, and it is no touch.
+bool CrossingSearch::is_on_curve(const Vector3d& point) const {
   const double room = std::max(2 * tolerance_, kNear);
-  const bool on_curve = std::any_of(known_.begin(), known_.end(), [&](const KnownCrossing& known) {
+  return std::any_of(known_.begin(), known_.end(), [&](const KnownCrossing& known) {
     return known.any_near(point, room, [&](const CrossingSegment& segment, double x) {
       return (segment.at(x).head<3>() - point).norm() <= room;
     });
   });
-  if (!on_curve) tangencies_.push_back({place, point, reach, is_single});
+}
+
+/// The branch through a place where the surfaces meet, unless it is known; a meeting place where
+/// there is none. False where following it fails from the beginning.
+bool CrossingSearch::follow(const CrossingPlace& place, double reach) {
+  const auto cut_off = [this] {
+    complete_ = false;
+    ++cut_offs_;
+    return false;
+  };
+  const auto start = walk_.settled(place);
+  if (!start) {
+    if (walk_.sine_at(place) > kTransversal && walk_.end_near(place) == WalkEnd::kCutOff) {
+      return cut_off();
+    }
+    add_meeting(place, reach);
+    return true;
+  }
+  if (is_known(start->place(), start->point())) return true;
+  if (segments_ > kMostSegments) return cut_off();
+  KnownCrossing found(walk_.branch_through(*start));
+  segments_ += found.branch().segments.size();
+  const bool is_cut_off = found.branch().is_cut_off();
+  if (found.length() > kNear) {
+    known_.push_back(std::move(found));
+    if (is_cut_off) cut_off();
+    return true;
+  }
+  if (is_cut_off) return cut_off();
+  add_meeting(place, 0);  // all of it is there
+  return true;
+}
+
+void CrossingSearch::add_meeting(const CrossingPlace& place, double reach) {
+  meetings_.push_back({place, first_.index().surface().point({place[0], place[1]}), reach});
 }
 
 /// Whether both are one curve in space, which runs along a seam and so has two places in a surface.
@@ -356,113 +388,85 @@ bool CrossingSearch::is_seam(const KnownCrossing& one, const KnownCrossing& othe
       });
 }
 
-/// Two flat parts that cannot be told apart: by least squares to a place where they meet, if there
-/// is one that no branch leads through.
-void CrossingSearch::look_for_touch(const PatchBound& a, const PatchBound& b) {
+/// Whether halves of two parts, of which so many pairs may be looked at, are all apart.
+bool CrossingSearch::are_apart(int a, int b, int& looks) {
+  const PatchBound& one = first_.bound(a);
+  const PatchBound& other = second_.bound(b);
+  if (apart(one, other)) return true;
+  if (--looks < 0) return false;
+  const bool first = one.reach >= other.reach;
+  const auto halves = first ? first_.halves(a) : second_.halves(b);
+  if (!halves) return false;
+  return std::all_of(halves->begin(), halves->end(), [&](int half) {
+    return first ? are_apart(half, b, looks) : are_apart(a, half, looks);
+  });
+}
+
+/// Beside a curve on which curved surfaces become tangent its parts run together, too, as does a
+/// pole that it leads through. (Planar parts may be large, and run together elsewhere.)
+bool CrossingSearch::is_beside_curve(const PatchBound& a, const PatchBound& b) const {
+  const PatchBound& smaller = a.reach < b.reach ? a : b;
+  if (smaller.reach <= kFlat && is_on_curve(smaller.jet.point)) return true;
+  constexpr double kPlanar = 1e-3 * kFlat;
+  if (std::max(height_of(a), height_of(b)) <= kPlanar) return false;
   Vector4d center;
   Vector4d half;
   center << a.box.center(), b.box.center();
   half << a.box.half(), b.box.half();
-  // Beside a curve on which curved surfaces become tangent its parts run together, too. (Planar
-  // parts may be large, and run together elsewhere.)
-  const double height =
-      std::max(a.frame_high.z() - a.frame_low.z(), b.frame_high.z() - b.frame_low.z());
-  constexpr double kPlanar = 1e-3 * kFlat;
-  bool passed = false;
+  bool beside = false;
   for (const KnownCrossing& known : known_) {
-    known.clip(center - 2 * half, center + 2 * half, [&](auto&, auto&) { passed = true; });
+    known.clip(center - 2 * half, center + 2 * half, [&](auto&, auto&) { beside = true; });
   }
-  if (passed && height > kPlanar) return;
-  CrossingPlace place = center;
+  return beside;
+}
+
+/// A place where two flat parts that cannot be told apart meet, by least squares. Whether there is
+/// one.
+bool CrossingSearch::find_meeting(const PatchBound& a, const PatchBound& b) {
+  CrossingPlace place;
+  CrossingPlace low;
+  CrossingPlace high;
+  place << a.box.center(), b.box.center();
+  low << a.box.low, b.box.low;
+  high << a.box.high, b.box.high;
   constexpr int kMostSteps = 30;
   constexpr double kMeets = 2 * kGeometric;
   bool meets = false;
   for (int step = 0; step < kMostSteps && !meets; ++step) {
-    const SurfaceJet p = first_.index().jet(a, place.head<2>());
-    const SurfaceJet q = second_.index().jet(b, place.tail<2>());
-    const Vector3d gap = q.point - p.point;
-    meets = gap.norm() <= kMeets;
-    Eigen::Matrix<double, 3, 4> m;
-    m << p.du, p.dv, -q.du, -q.dv;
+    const CrossingJets here = {first_.index().jet(a, place.head<2>()),
+                               second_.index().jet(b, place.tail<2>())};
+    meets = here.gap().norm() <= kMeets;
+    Eigen::Matrix<double, 3, 4> m = here.jacobian();
     // In mm, and so that tangent surfaces do not divide by 0.
-    const Vector4d scale = m.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-    m = m * scale.asDiagonal();
+    constexpr double kNoSpeed = 1e-300;  // at a pole
     constexpr double kDamping = 1e-10;
-    const Eigen::Matrix4d normal =
-        m.transpose() * m + kDamping * Eigen::Matrix4d(Eigen::Matrix4d::Identity());
-    const Vector4d move = normal.partialPivLu().solve(m.transpose() * gap).cwiseProduct(scale);
-    if (!move.allFinite()) return;
-    place = (place + move).cwiseMax(center - half).cwiseMin(center + half);
+    const Vector4d scale = m.colwise().norm().cwiseMax(kNoSpeed).cwiseInverse();
+    m = m * scale.asDiagonal();
+    Vector4d move = Vector4d::Zero();
+    for (int solved = 0; solved < 4; ++solved) {  // without those that would leave the parts
+      const Eigen::Matrix4d normal =
+          m.transpose() * m + kDamping * Eigen::Matrix4d(Eigen::Matrix4d::Identity());
+      move = normal.partialPivLu().solve(m.transpose() * here.gap()).cwiseProduct(scale);
+      if (!move.allFinite()) return false;
+      bool leaves = false;
+      for (int k = 0; k < 4; ++k) {
+        if (!(move[k] < 0 ? place[k] <= low[k] : move[k] > 0 && place[k] >= high[k])) continue;
+        m.col(k).setZero();
+        leaves = true;
+      }
+      if (!leaves) break;
+    }
+    place = (place + move).cwiseMax(low).cwiseMin(high);
   }
   const double reach = std::min(a.reach, b.reach);
-  constexpr double kTransversal = 1e-4;
   if (const auto found = walk_.tangency_near(place, 2 * reach)) {
-    add_tangency(found->place, reach, found->is_single);
-  } else if (meets) {
-    walk_.sine_at(place) > kTransversal ? follow(place, reach) : add_tangency(place, reach, false);
+    add_meeting(found->place, found->is_single ? 0 : reach);
+    return true;
   }
-}
-
-/// Tangencies that are near each other are one: neighbours are found by a grid of cells that are as
-/// wide as any two may be apart.
-std::vector<SurfaceTouch> CrossingSearch::touches() const {
-  const std::size_t count = tangencies_.size();
-  double width = 2 * kNear;
-  for (const Tangency& t : tangencies_) width = std::max(width, 4 * t.reach + kNear);
-  using GridCell = std::array<std::int64_t, 3>;
-  const auto cell_of = [width](const Vector3d& p) {
-    constexpr double kMost = 1e15;
-    GridCell out{};
-    for (std::size_t d = 0; d < 3; ++d) {
-      const double x = std::floor(p[static_cast<Eigen::Index>(d)] / width);
-      out[d] = static_cast<std::int64_t>(std::clamp(x, -kMost, kMost));
-    }
-    return out;
-  };
-  std::map<GridCell, std::vector<std::size_t>> grid;
-  std::vector<std::size_t> parent(count);  // of a forest: those with the same root are one
-  const auto root = [&parent](std::size_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (std::size_t i = 0; i < count; ++i) {
-    const Tangency& next = tangencies_[i];
-    parent[i] = i;
-    const GridCell at = cell_of(next.point);
-    for (int k = 0; k < 27; ++k) {
-      const auto found = grid.find({at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1});
-      if (found == grid.end()) continue;
-      for (const std::size_t j : found->second) {
-        if (root(i) == root(j)) continue;
-        const Tangency& other = tangencies_[j];
-        const double room = 2 * (next.reach + other.reach) + kNear;
-        if ((next.point - other.point).norm() <= room) parent[root(i)] = root(j);
-      }
-    }
-    grid[at].push_back(i);
-  }
-  struct Cluster {
-    const Tangency* one = nullptr;  ///< a single one, if there is
-    Vector3d low;
-    Vector3d high;
-    double reach = 0;
-  };
-  std::map<std::size_t, Cluster> clusters;  // by their roots
-  for (std::size_t i = 0; i < count; ++i) {
-    const Tangency& next = tangencies_[i];
-    Cluster& c = clusters[root(i)];
-    if (c.one == nullptr) c.low = c.high = next.point;
-    if (c.one == nullptr || next.is_single) c.one = &next;
-    c.low = c.low.cwiseMin(next.point);
-    c.high = c.high.cwiseMax(next.point);
-    c.reach = std::max(c.reach, next.reach);
-  }
-  std::vector<SurfaceTouch> out;
-  for (const auto& [first, c] : clusters) {
-    const double extent = c.one->is_single ? 0.0 : (c.high - c.low).norm() + 2 * c.reach;
-    out.push_back({c.one->point, c.one->place.head<2>(), c.one->place.tail<2>(), extent});
-  }
-  return out;
+  if (!meets) return false;
+  if (walk_.sine_at(place) > kTransversal) return follow(place, reach);
+  add_meeting(place, reach);
+  return true;
 }
 
 /// Whether the cubics through a joint, with their lengths as parameters, have one tangent there.
@@ -517,7 +521,17 @@ std::optional<SurfaceCrossing> crossing_of(const CrossingBranch& branch) {
 
 SurfaceCrossings CrossingSearch::run() {
   visit_nodes(root_of(first_.index()), root_of(second_.index()));
-  for (const auto& [a, b] : running_together_) look_for_touch(first_.bound(a), second_.bound(b));
+  for (const auto& [a, b] : running_together_) {
+    const PatchBound& one = first_.bound(a);
+    const PatchBound& other = second_.bound(b);
+    if (is_beside_curve(one, other) || find_meeting(one, other) || !complete_) continue;
+    int looks = std::min(looks_, kMostLooksAtPair);
+    looks_ -= looks;
+    complete_ = are_apart(a, b, looks);
+    looks_ += std::max(looks, 0);
+  }
+  const auto on_curve = [this](const MeetingPlace& m) { return is_on_curve(m.point); };
+  meetings_.erase(std::remove_if(meetings_.begin(), meetings_.end(), on_curve), meetings_.end());
   SurfaceCrossings out;
   for (std::size_t i = 0; i < known_.size(); ++i) {
     const bool repeats = std::any_of(known_.begin(), known_.begin() + std::ptrdiff_t(i),
@@ -529,7 +543,7 @@ SurfaceCrossings CrossingSearch::run() {
       complete_ = false;  // too short, or too far away, for knots of its own
     }
   }
-  out.touches = touches();
+  out.touches = touches_of(meetings_);
   out.complete = complete_;
   return out;
 }
@@ -539,6 +553,7 @@ SurfaceCrossings CrossingSearch::run() {
 SurfaceCrossings cross_surfaces(const SurfaceIndex& first, const SurfaceIndex& second,
                                 double tolerance) {
   LIMN_EXPECT(tolerance > 0);
+  if (!is_within_numbers(first) || !is_within_numbers(second)) return {{}, {}, false};
   return CrossingSearch(first, second, std::max(tolerance, kNear)).run();
 }
 

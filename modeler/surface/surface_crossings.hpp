@@ -37,10 +37,11 @@ struct SurfaceTouch {
 struct SurfaceCrossings {
   std::vector<SurfaceCrossing> curves;
   std::vector<SurfaceTouch> touches;
-  /// False where the search was cut off after a bounded number of parts: the surfaces run together
-  /// over an area, or nearly do. It does not tell of curves that end early, where following one
-  /// failed, nor of two that are so near each other, at a small angle, that `tolerance` makes them
-  /// one.
+  /// Whether these are all. False where the search was cut off after a bounded number of parts, as
+  /// where surfaces run together over an area, or nearly do; where a curve could not be followed to
+  /// an edge, a break, a pole, a tangency or its own beginning; and where parts that seem to run
+  /// together were neither found to meet nor shown to be apart. It does not tell of two curves that
+  /// are so near each other, at a small angle, that `tolerance` makes them one.
   bool complete = true;
 };
 

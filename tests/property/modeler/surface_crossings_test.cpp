@@ -191,6 +191,35 @@ TEST(CrossSurfaces, Tangent) {
 TEST(CrossSurfaces, SaysWhatItDoesNotKnow) {
   const BsplineSurface sphere = ball({0, 0, 0}, 5);
   EXPECT_FALSE(cross(sphere, sphere).complete);
+  // x = t^3, z = t^2: where the sheet has no normal, a curve can't be followed on.
+  const std::vector<Vector3d> cusp = {{-1, 0, 1},  {1, 0, -1. / 3},  {-1, 0, -1. / 3},  {1, 0, 1},
+                                      {-1, 10, 1}, {1, 10, -1. / 3}, {-1, 10, -1. / 3}, {1, 10, 1}};
+  const auto sheet = *BsplineSurface::make(
+      {*KnotVector::make_clamped(3, -1, 1), *KnotVector::make_clamped(1, 0, 1)}, cusp);
+  const SurfaceCrossings found =
+      cross(sheet, square({0, 5, 0}, 20, Vector3d::UnitX(), Vector3d::UnitZ()));
+  EXPECT_EQ(found.curves.size(), 2U) << "one on each side";
+  EXPECT_FALSE(found.complete);
+}
+
+/// Parts that are flat to less than what they are apart by are not given up: those that cross are
+/// told, and those that do not are known not to.
+TEST(CrossSurfaces, NearlyFlatSheets) {
+  const auto sheet = [](double side, double middle) {  // heights of Bezier points, 1e-8 mm
+    std::vector<Vector3d> points;
+    for (const double y : {-5.0, 5.0}) {
+      points.insert(points.end(),
+                    {{-5, y, 1e-8 * side}, {0, y, 1e-8 * middle}, {5, y, 1e-8 * side}});
+    }
+    return *BsplineSurface::make(
+        {*KnotVector::make_clamped(2, 0, 1), *KnotVector::make_clamped(1, 0, 1)}, points);
+  };
+  const BsplineSurface plane = square({0, 0, 0}, 20);
+  const SurfaceCrossings through = cross(sheet(-4, 12), plane);  // heights of -4 to 4
+  EXPECT_TRUE(!through.curves.empty() || !through.touches.empty() || !through.complete);
+  const SurfaceCrossings above = cross(sheet(10, -6), plane);  // heights of 2 to 10
+  EXPECT_TRUE(above.complete);
+  EXPECT_TRUE(above.curves.empty() && above.touches.empty());
 }
 
 /// A circle that nearly touches all four edges of a sheet: parameters stay in the domain.
@@ -223,6 +252,31 @@ TEST(CrossSurfacesLaw, CurvesAlongEdges) {
     expect_length(*make_plane(frame_at(origin, x, y), 10, 7),
                   *make_plane(frame_at(origin, x, z), 10, 7), 10);
     expect_length(*make_cylinder(frame_at(origin, x, y), 5, 10), square(origin, 20, x, y), 10 * pi);
+  });
+}
+
+/// Spheres that overlap by little share a loop that is smaller than the parts that are looked at:
+/// it is found, or taken for a touch, or said to be missing.
+TEST(CrossSurfacesLaw, TinyLoopsAreTold) {
+  test::for_all(100, [](test::Rng& rng) {
+    const double overlap = std::pow(10, rng.uniform(-8.5, -6));
+    const Vector3d way = Vector3d(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
+    const SurfaceCrossings found =
+        cross(ball({0, 0, 0}, 5), ball((10 - overlap) * way.normalized(), 5));
+    EXPECT_TRUE(!found.curves.empty() || !found.touches.empty() || !found.complete) << overlap;
+  });
+}
+
+/// Those that are a little apart have nothing in common, and are known to.
+TEST(CrossSurfacesLaw, SmallGapsAreSeen) {
+  test::for_all(100, [](test::Rng& rng) {
+    const double gap = std::pow(10, rng.uniform(-7.5, -5));
+    const Vector3d way = Vector3d(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
+    const SurfaceCrossings found =
+        cross(ball({0, 0, 0}, 5), ball((10 + gap) * way.normalized(), 5));
+    EXPECT_TRUE(found.curves.empty());
+    EXPECT_TRUE(found.touches.empty());
+    EXPECT_TRUE(found.complete) << gap;
   });
 }
 
