@@ -230,6 +230,10 @@ class RaySearch {
 
   void add(const Vector2d& parameter, const Vector3d& point, double run, bool certain) {
     const double t = (point - ray_.origin).dot(along_) * per_length_;
+    if (!std::isfinite(t) || !parameter.allFinite()) {  // numbers overflowed
+      found_.complete = false;
+      return;
+    }
     if (t < -kGeometric * per_length_ || t > most_ + kGeometric * per_length_) return;
     found_.hits.push_back({std::max(t, 0.0), parameter, point, run, certain});
     if (first_only_ && certain) most_ = std::min(most_, std::max(t, 0.0));
