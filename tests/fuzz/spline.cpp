@@ -82,6 +82,38 @@ std::vector<double> coordinates(Input& input, const std::vector<KnotVector>& kno
 
 constexpr std::size_t kMostLeaves = 60;
 
+constexpr double kTolerance = 1e-3;  // mm, of crossings
+
+void check_crossing(const limn::SurfaceCrossing& crossing, const BsplineSurface& first,
+                    const BsplineSurface& second) {
+  // The deviation is that in three places of a span; elsewhere a span may be off by more.
+  constexpr double kBetween = 1.5;
+  constexpr double kRounding = 1e-8;  // mm, of coordinates up to 8
+  const double room = crossing.deviation * kBetween + kRounding;
+  const std::vector<double> ends = crossing.curve.knots().breakpoints();
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    for (const double part : {0.0, 0.1, 0.4, 0.6, 0.9}) {
+      const double t = ends[i] + part * (ends[i + 1] - ends[i]);
+      const Eigen::Vector3d point = crossing.curve.point(t);
+      const auto check = [&](const BsplineSurface& surface, const limn::BsplineCurve<2>& on) {
+        const Eigen::Vector2d at = on.point(t);
+        for (int d = 0; d < 2; ++d) {
+          const auto& knots = surface.knots(d);
+          const double rounding = 1e-15 * (std::abs(at[d]) + 1);
+          require(
+              at[d] >= knots.domain_begin() - rounding && at[d] <= knots.domain_end() + rounding,
+              "curves lie in the domain");
+        }
+        const Eigen::Vector3d there = surface.point({at.x(), at.y()});
+        require(there.allFinite() && point.allFinite(), "curves are finite");
+        require(wild || (there - point).norm() <= room, "curves lie on both surfaces");
+      };
+      check(first, crossing.on_first);
+      check(second, crossing.on_second);
+    }
+  }
+}
+
 void ask(const BsplineSurface& surface, Input& input) {
   const limn::SurfaceEvaluator evaluator(surface);
   (void)evaluator.jet(number(input), number(input));
@@ -112,9 +144,10 @@ void ask(const BsplineSurface& surface, Input& input) {
   if (index.leaves().size() > kMostLeaves) return;
   const auto plane = limn::make_plane({p, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 8, 8);
   if (!plane) return;
-  const auto crossings = limn::cross_surfaces(index, limn::SurfaceIndex(*plane), 1e-3);
+  const auto crossings = limn::cross_surfaces(index, limn::SurfaceIndex(*plane), kTolerance);
   for (const auto& crossing : crossings.curves) {
-    require(crossing.deviation <= 1e-3, "curves are within the tolerance");
+    require(crossing.deviation <= kTolerance, "curves are within the tolerance");
+    check_crossing(crossing, surface, *plane);
   }
 }
 
