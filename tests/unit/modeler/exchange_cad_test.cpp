@@ -24,6 +24,10 @@
 #include "modeler/surface/measures.hpp"
 #include "modeler/surface/primitives.hpp"
 
+// Open CASCADE's readers and writers keep some of what they make; not of limn's making.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libTK\n"; }
+
 namespace limn {
 namespace {
 
