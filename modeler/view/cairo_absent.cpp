@@ -1,4 +1,5 @@
 #include "modeler/view/picture.hpp"
+#include "modeler/view/pixel_image.hpp"
 #include "modeler/view/sheet.hpp"
 
 namespace limn {
@@ -22,5 +23,7 @@ Expected<std::string> draw_png(const Sheet& /*sheet*/, double /*pixels*/,
                                const Drawing& /*drawing*/) {
   return absent("PNG");
 }
+
+Expected<std::string> encode_png(const PixelImage& /*image*/) { return absent("PNG"); }
 
 }  // namespace limn
