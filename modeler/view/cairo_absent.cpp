@@ -1,5 +1,4 @@
 #include "modeler/view/picture.hpp"
-#include "modeler/view/pixel_image.hpp"
 #include "modeler/view/sheet.hpp"
 
 namespace limn {
@@ -23,7 +22,5 @@ Expected<std::string> draw_png(const Sheet& /*sheet*/, double /*pixels*/,
                                const Drawing& /*drawing*/) {
   return absent("PNG");
 }
-
-Expected<std::string> encode_png(const PixelImage& /*image*/) { return absent("PNG"); }
 
 }  // namespace limn

@@ -7,9 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "input/base/expect.hpp"
 #include "modeler/view/picture.hpp"
-#include "modeler/view/pixel_image.hpp"
 #include "modeler/view/sheet.hpp"
 
 namespace limn {
@@ -143,13 +141,6 @@ Expected<void> draw_on(cairo_surface_t* surface, double scale, const Sheet& shee
   return {};
 }
 
-Expected<std::string> png_of(cairo_surface_t* surface) {
-  std::string bytes;
-  const cairo_status_t status = cairo_surface_write_to_png_stream(surface, append, &bytes);
-  if (status != CAIRO_STATUS_SUCCESS) return cairo_failed(status);
-  return bytes;
-}
-
 }  // namespace
 
 bool has_cairo() noexcept { return true; }
@@ -183,18 +174,10 @@ Expected<std::string> draw_png(const Sheet& sheet, double pixels, const Drawing&
   if (auto drawn = draw_on(surface.get(), scale, sheet, drawing); !drawn) {
     return tl::unexpected(std::move(drawn.error()));
   }
-  return png_of(surface.get());
-}
-
-Expected<std::string> encode_png(const PixelImage& image) {
-  LIMN_EXPECT(image.width > 0 && image.height > 0);
-  constexpr int kBytesPerPixel = 4;
-  // cairo takes pixels that it may draw on, but only reads these.
-  auto* const pixels =
-      const_cast<unsigned char*>(reinterpret_cast<const unsigned char*>(image.pixels.data()));
-  const Surface surface(cairo_image_surface_create_for_data(
-      pixels, CAIRO_FORMAT_RGB24, image.width, image.height, kBytesPerPixel * image.width));
-  return png_of(surface.get());
+  std::string bytes;
+  const cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), append, &bytes);
+  if (status != CAIRO_STATUS_SUCCESS) return cairo_failed(status);
+  return bytes;
 }
 
 }  // namespace limn

@@ -27,7 +27,6 @@ void transport_area(const RowSink& sink);
 void footprint_area(const RowSink& sink);
 void fit_area(const RowSink& sink);
 void kernel_area(const RowSink& sink);
-void picture_area(const RowSink& sink);
 /// Draws them, too.
 Picture growth_area(const RowSink& sink);
 void boot_area(const RowSink& sink);

@@ -40,7 +40,6 @@ constexpr Area kAreas[] = {
      limn::bench::kernel_area},
     {"growth", "surfaces: how costs grow with the number of control points, with a picture",
      nullptr, false, limn::bench::growth_area},
-    {"picture", "pictures of models without a GPU", limn::bench::picture_area},
     {"boot", "the first boot of tests/kernel: wall time; only where it is named",
      limn::bench::boot_area, true},
 };

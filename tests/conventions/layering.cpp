@@ -69,9 +69,6 @@ const std::vector<Layer>& layers() {
         "modeler/model", "modeler/mesh", "modeler/manip", "modeler/shapes", "modeler/sketch",
         "modeler/document"},
        {"Eigen/", "nlohmann/", "opencascade"}},
-      {"modeler/view/raster",
-       {"input/base", "modeler/base", "modeler/bspline", "modeler/mesh", "modeler/view"},
-       {"Eigen/", "glm/"}},
       {"modeler/view",
        {"input", "modeler/base", "modeler/bspline", "modeler/fit", "modeler/surface",
         "modeler/model", "modeler/mesh", "modeler/manip", "modeler/shapes", "modeler/sketch",
@@ -94,8 +91,8 @@ const std::vector<Layer>& layers() {
       {"tests",
        {"input", "drivers", "modeler", "firmware_sim", "tests"},
        {"gtest/", "gmock/", "benchmark/", "sanitizer/", "Eigen/", "nlohmann/", "cairo",
-        "opencascade", "sisl.h", "embree3/", "GL/", "spnav.h", "umockdev.h", "posix", "dlfcn.h",
-        "linux/", "netinet/", "sys/"}},
+        "opencascade", "sisl.h", "embree3/", "spnav.h", "umockdev.h", "posix", "dlfcn.h", "linux/",
+        "netinet/", "sys/"}},
   };
   return table;
 }

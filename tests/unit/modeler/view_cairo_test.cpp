@@ -9,7 +9,6 @@
 
 #include "modeler/view/page.hpp"
 #include "modeler/view/picture.hpp"
-#include "modeler/view/pixel_image.hpp"
 #include "tests/unit/modeler/sketch_examples.hpp"
 
 namespace limn {
@@ -34,16 +33,6 @@ class Image {
     const unsigned char* p = cairo_image_surface_get_data(surface_.get()) +
                              y * cairo_image_surface_get_stride(surface_.get()) + 4 * x;
     return (p[0] + p[1] + p[2]) / 3;
-  }
-
-  /// 0x00RRGGBB
-  std::uint32_t color(int x, int y) const {
-    std::uint32_t pixel;
-    std::memcpy(&pixel,
-                cairo_image_surface_get_data(surface_.get()) +
-                    y * cairo_image_surface_get_stride(surface_.get()) + 4 * x,
-                sizeof pixel);
-    return pixel & 0xffffff;
   }
 
   /// At a place of the sketch.
@@ -194,16 +183,6 @@ TEST(SketchPng, CaptionAndScaleBarAreNotClipped) {
   for (int y = 0; y < image.height(); ++y) {
     EXPECT_EQ(image.brightness(0, y), 255);
     EXPECT_EQ(image.brightness(image.width() - 1, y), 255);
-  }
-}
-
-TEST(PixelPng, HasThePixels) {
-  const PixelImage pixels{3, 2, {0x000000, 0xff0000, 0x00ff00, 0x0000ff, 0xffffff, 0x123456}};
-  const Image image(encode_png(pixels).value());
-  ASSERT_EQ(image.width(), 3);
-  ASSERT_EQ(image.height(), 2);
-  for (int y = 0; y < 2; ++y) {
-    for (int x = 0; x < 3; ++x) EXPECT_EQ(image.color(x, y), pixels.at(x, y)) << x << ", " << y;
   }
 }
 
