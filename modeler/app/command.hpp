@@ -150,31 +150,11 @@ struct SimulateArguments {
   OutputFormat format = OutputFormat::kText;
 };
 
-struct MakeArguments {
-  std::string kind;
-  std::vector<double> size;  ///< mm; empty: the kind's own
-  std::string output;
-};
-
-struct InfoArguments {
-  std::string path;
-  OutputFormat format = OutputFormat::kText;
-};
-
-struct ConvertModelArguments {
-  std::string input;
-  std::string output;
-  bool ap242 = false;
-};
-
 Outcome run_descriptor(const DescriptorArguments& arguments);
 Outcome run_convert(const ConvertArguments& arguments);
-Outcome run_convert_model(const ConvertModelArguments& arguments);
 Outcome run_decode(const DecodeArguments& arguments);
 Outcome run_devices(const DevicesArguments& arguments);
 Outcome run_doctor(const DoctorArguments& arguments);
-Outcome run_info(const InfoArguments& arguments);
-Outcome run_make(const MakeArguments& arguments);
 Outcome run_monitor(const MonitorArguments& arguments);
 Outcome run_plot(const PlotArguments& arguments);
 Outcome run_record(const RecordArguments& arguments);

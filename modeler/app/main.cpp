@@ -48,8 +48,6 @@ constexpr const char* kForeignTraces =
     "A USB capture (pcap, pcapng), a recording by libinput, hid-recorder, usbhid-dump or evemu, or "
     "a CSV file of a 3D mouse, told apart by content; - is standard input";
 
-constexpr const char* kModels = "A model: .limn.json, .step (.stp) or .iges (.igs)";
-
 void add_trace(CLI::App& command, TraceArguments& trace, const char* what = kTraces) {
   command.add_option("TRACE", trace.path, what)->required()->type_name("");
   command
@@ -192,43 +190,6 @@ int run(int argc, char** argv) {
       "The one device to keep, by its number in the recording; all unless given")
       ->type_name("N");
   convert_command->callback([&] { outcome = run_convert(convert); });
-
-  ConvertModelArguments convert_model;
-  CLI::App* convert_model_command = app.add_subcommand(
-      "convert", "Write a model in another format, read it back and say how well it came through");
-  convert_model_command->add_option("MODEL", convert_model.input, kModels)
-      ->required()
-      ->type_name("");
-  convert_model_command
-      ->add_option("-o,--output", convert_model.output, "The file to write, its type by extension")
-      ->required()
-      ->type_name("FILE");
-  convert_model_command->add_flag("--ap242", convert_model.ap242, "STEP by AP242 instead of AP214");
-  convert_model_command->callback([&] { outcome = run_convert_model(convert_model); });
-
-  InfoArguments info;
-  CLI::App* info_command = app.add_subcommand(
-      "info", "List a model's bodies, faces and curves: degrees, sizes, continuity, trims, bounds");
-  info_command->add_option("MODEL", info.path, kModels)->required()->type_name("");
-  add_format(*info_command, info.format);
-  info_command->callback([&] { outcome = run_info(info); });
-
-  MakeArguments make;
-  CLI::App* make_command = app.add_subcommand("make", "Make a model of one simple shape");
-  make_command->add_option("KIND", make.kind, "box, cone, cylinder, disc, plane, sphere or torus")
-      ->required()
-      ->type_name("");
-  make_command
-      ->add_option("--size", make.size,
-                   "In mm: a box's sides; a cone's radii and height; a cylinder's radius and "
-                   "height; a plane's sides; the radius of a disc or sphere; a torus's two radii")
-      ->type_name("A[,B..]")
-      ->delimiter(',');
-  make_command
-      ->add_option("-o,--output", make.output, "The model to write: .limn.json, .step or .iges")
-      ->required()
-      ->type_name("FILE");
-  make_command->callback([&] { outcome = run_make(make); });
 
   DevicesArguments devices;
   CLI::App* devices_command =

@@ -27,10 +27,6 @@ class OutputFile final : public ByteSink {
   ~OutputFile() override;
 
   const std::string& path() const noexcept { return path_; }
-  /// Where the bytes are until commit().
-  const std::string& written_path() const noexcept {
-    return temporary_.empty() ? path_ : temporary_;
-  }
 
   /// Appends all of `bytes`. Error: kIo (disk full). A closed pipe ends the program by SIGPIPE, as
   /// it ends others.
