@@ -62,6 +62,8 @@ class ControlPointMap {
 /// Maps layers of `layer` doubles, one after another: out layer r = sum_k a_{r,k} in layer
 /// first(r) + k. Each block of `in` holds map.columns() layers, out gets map.rows() a block, one
 /// after another; they must not overlap. Gives the same bits on every processor.
+/// Several blocks at a time cost least, best a multiple of kBlocksTogether.
+inline constexpr std::size_t kBlocksTogether = 4;
 void map_layers(const ControlPointMap& map, std::size_t layer, std::span<const double* const> in,
                 double* out) noexcept;
 

@@ -39,7 +39,7 @@ LIMN_KERNEL void evaluate_jets(const SplineData& curve, const BasisTable& table,
   const auto width = static_cast<std::size_t>(curve.width());
   const auto dimension = static_cast<std::size_t>(curve.dimension());
   const auto count = static_cast<std::size_t>(table.knots().degree()) + 1;
-  std::array<double, kMostPoints*(SplineData::kMostDimension + 1) + 4> scratch;
+  std::array<double, kMostPoints*(SplineData::kMostDimension + 1) + PagedArray::kPadding> scratch;
   Functions<kOrder> f;
   Rows rows;
   for (const double u : us) {

@@ -92,15 +92,13 @@ LIMN_KERNEL void map_points(const ControlPointMap& map, const double* const* in,
   done = r;
 }
 
-constexpr std::size_t kTogether = 4;
-
 template <std::size_t kLayer>
 LIMN_KERNEL void map_blocks(const ControlPointMap& map, std::span<const double* const> in,
                             double* out, int& done) noexcept {
   const auto step = static_cast<std::size_t>(map.rows()) * kLayer;
   std::size_t b = 0;
-  for (; b + kTogether <= in.size(); b += kTogether) {
-    map_points<kLayer, kTogether>(map, in.data() + b, out + b * step, done);
+  for (; b + kBlocksTogether <= in.size(); b += kBlocksTogether) {
+    map_points<kLayer, kBlocksTogether>(map, in.data() + b, out + b * step, done);
   }
   for (; b < in.size(); ++b) map_points<kLayer, 1>(map, in.data() + b, out + b * step, done);
 }

@@ -20,12 +20,21 @@ struct Layers {
   std::size_t blocks;
 };
 
-Layers layers_of(const SplineData& spline, int direction) {
-  Layers out{};
-  out.layer = spline.stride(direction) * static_cast<std::size_t>(spline.width());
-  out.count = static_cast<std::size_t>(spline.knots(direction).basis_count());
-  out.blocks = spline.coordinates().size() / (out.layer * out.count);
+/// Of so many coordinates, `width` a control point.
+Layers layers_of(std::span<const KnotVector> knots, int direction, std::size_t width,
+                 std::size_t size) {
+  const auto count = [&](int d) {
+    return static_cast<std::size_t>(knots[static_cast<std::size_t>(d)].basis_count());
+  };
+  Layers out{width, count(direction), 0};
+  for (int d = 0; d < direction; ++d) out.layer *= count(d);
+  out.blocks = size / (out.layer * out.count);
   return out;
+}
+
+Layers layers_of(const SplineData& spline, int direction) {
+  return layers_of(spline.knots(), direction, static_cast<std::size_t>(spline.width()),
+                   spline.coordinates().size());
 }
 
 Expected<SplineData> with_direction(const SplineData& spline, int direction, KnotVector knots,
@@ -83,8 +92,8 @@ class BlockRefinement {
         rows_(refinement),
         old_size_(in.count * in.layer),
         size_(rows_.count * in.layer),
-        most_(std::min(in.blocks,
-                       std::max(kDoubles / size_ / kTogether, std::size_t{1}) * kTogether)),
+        most_(std::min(in.blocks, std::max(kDoubles / size_ / kBlocksTogether, std::size_t{1}) *
+                                      kBlocksTogether)),
         scratch_(make_scratch(most_ * (old_size_ + PagedArray::kPadding))),
         blocks_(most_),
         made_(make_scratch(most_ * size_)) {}
@@ -112,9 +121,7 @@ class BlockRefinement {
   }
 
  private:
-  /// Blocks at a time: what map_layers() does best, as many as the processor keeps near.
-  static constexpr std::size_t kTogether = 4;
-  static constexpr std::size_t kDoubles = 4096;
+  static constexpr std::size_t kDoubles = 4096;  ///< that the processor keeps near
 
   void begin_next() {
     first_ += count_;
@@ -212,17 +219,11 @@ Expected<SplineData> refine_along(const SplineData& spline, std::span<const Step
   Source from(spline.coordinates());
   std::size_t size = spline.coordinates().size();
   PagedArray made;
-  std::size_t layer = 0;
   for (const Step& step : steps) {
-    const auto direction = static_cast<std::size_t>(step.direction);
-    layer = static_cast<std::size_t>(spline.width());
-    for (std::size_t d = 0; d < direction; ++d) {
-      layer *= static_cast<std::size_t>(knots[d].basis_count());
-    }
-    const auto count = static_cast<std::size_t>(knots[direction].basis_count());
-    const Layers in{layer, count, size / (layer * count)};
-    size = in.blocks * static_cast<std::size_t>(step.refinement->map.rows()) * layer;
-    knots[direction] = step.refinement->knots;
+    const Layers in =
+        layers_of(knots, step.direction, static_cast<std::size_t>(spline.width()), size);
+    size = in.blocks * static_cast<std::size_t>(step.refinement->map.rows()) * in.layer;
+    knots[static_cast<std::size_t>(step.direction)] = step.refinement->knots;
     const bool last = &step == &steps.back();
     with_refinement(from, in, *step.refinement, [&](auto fill) {
       if (last) {

@@ -23,7 +23,8 @@ Expected<SplineData> insert_knots(const SplineData& spline, int direction,
                                   std::span<const double> added);
 
 /// With knots added in each direction at once, added[d] in direction d: what that gives in between
-/// is neither checked nor put into pages. Precondition: a list, which may be empty, a direction.
+/// is neither checked nor put into pages. Errors as for one direction. Precondition: a list, which
+/// may be empty, a direction.
 Expected<SplineData> insert_knots(const SplineData& spline,
                                   std::span<const std::span<const double>> added);
 

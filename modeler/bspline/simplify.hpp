@@ -17,8 +17,9 @@ struct Simplified {
   double deviation = 0;
 };
 
-/// No point of `a` is further from that of `b` at equal parameters: a bound, infinite where a
-/// weight is not positive. Precondition: the same knots, dimension and form.
+/// No point of `a` is further from that of `b` at equal parameters (mm where they are in mm): a
+/// bound, infinite where a weight is not positive. Precondition: the same knots, dimension and
+/// form.
 double largest_difference(const SplineData& a, const SplineData& b);
 
 /// Without one of the knots `u` of one direction. Control points that the knot does not touch stay;

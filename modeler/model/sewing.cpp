@@ -188,6 +188,11 @@ Expected<Body> sew(std::string name, std::vector<BsplineSurface> surfaces, doubl
   if (surfaces.empty()) {
     return fail(ErrorCode::kMissing, "surfaces", "there are none", "give at least one");
   }
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (surfaces[i].knots(0).degree() > 0 && surfaces[i].knots(1).degree() > 0) continue;
+    return fail(ErrorCode::kOutOfRange, "surface " + std::to_string(i + 1),
+                "a direction of degree 0 has pieces that are not joined", "raise its degree");
+  }
   Sewing sewing(std::move(name), tolerance);
   for (BsplineSurface& surface : surfaces) sewing.add(std::move(surface));
   return sewing.take();

@@ -15,14 +15,15 @@ namespace limn {
 ///
 /// Edges hold to Edge::deviation, a bound from hulls. O(n^2) in the borders, cheap but for those
 /// whose ends meet.
-/// Errors: kOutOfRange unless tolerance > 0 and finite; kMissing for no surfaces.
+/// Errors: kOutOfRange unless tolerance > 0 and finite, or for a surface with a direction of degree
+/// 0, whose pieces have borders of their own; kMissing for no surfaces.
 Expected<Body> sew(std::string name, std::vector<BsplineSurface> surfaces, double tolerance);
 
 /// Whether each edge but poles has exactly two uses: the body has an inside.
 bool is_closed(const Body& body);
 
-/// A border of a surface, parameterised by the surface's own u or v: direction 0 gives v = its
-/// first or last, which runs along u.
+/// A border of a surface, in mm, parameterised by the surface's own u (direction 0, at the first or
+/// the last v) or v (direction 1, at the first or the last u). Precondition: degrees above 0.
 BsplineCurve<3> border_curve(const BsplineSurface& surface, int direction, bool last);
 
 }  // namespace limn

@@ -9,7 +9,7 @@ namespace limn {
 
 /// Points of two surfaces that are found by Newton's iteration are the same within this, mm; curves
 /// that are shorter are places.
-inline constexpr double kNear = 10 * kGeometric;
+inline constexpr double kNearCrossing = 10 * kGeometric;
 
 /// Parameters on two surfaces: (u, v) on the first, then (u, v) on the second.
 using CrossingPlace = Eigen::Vector4d;

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 /// Whether two places belong to one touch. Reaches are those of parts, which share no more than an
 /// edge: their middles may be off by as much again.
 bool belong_together(const MeetingPlace& a, const MeetingPlace& b) {
-  return (a.point - b.point).norm() <= 2 * (a.reach + b.reach) + kNear;
+  return (a.point - b.point).norm() <= 2 * (a.reach + b.reach) + kNearCrossing;
 }
 
 using GridCell = std::array<std::int64_t, 3>;
@@ -35,7 +35,7 @@ std::vector<MeetingPlace> without_repeats(const std::vector<MeetingPlace>& place
   std::vector<MeetingPlace> out;
   std::map<GridCell, std::size_t> known;
   for (const MeetingPlace& p : places) {
-    const auto [at, is_new] = known.try_emplace(cell_of(p.point, kNear), out.size());
+    const auto [at, is_new] = known.try_emplace(cell_of(p.point, kNearCrossing), out.size());
     if (is_new) {
       out.push_back(p);
     } else {
@@ -53,8 +53,8 @@ std::vector<std::size_t> joined(const std::vector<MeetingPlace>& places) {
     return i;
   };
   // Neighbours are found by cells that are as wide as any two that belong together may be apart.
-  double width = kNear;
-  for (const MeetingPlace& p : places) width = std::max(width, 4 * p.reach + kNear);
+  double width = kNearCrossing;
+  for (const MeetingPlace& p : places) width = std::max(width, 4 * p.reach + kNearCrossing);
   std::map<GridCell, std::vector<std::size_t>> grid;
   for (std::size_t i = 0; i < places.size(); ++i) {
     parent[i] = i;
@@ -99,7 +99,7 @@ std::vector<SurfaceTouch> touches_of(const std::vector<MeetingPlace>& found) {
   std::vector<SurfaceTouch> out;
   for (const auto& [number, c] : clusters) {
     const double extent = (c.high - c.low).norm() + 2 * c.reach;
-    const bool isolated = c.reach == 0 && extent <= kNear;
+    const bool isolated = c.reach == 0 && extent <= kNearCrossing;
     out.push_back(
         {c.one->point, c.one->place.head<2>(), c.one->place.tail<2>(), isolated ? 0.0 : extent});
   }

@@ -297,24 +297,32 @@ double CrossingWalk::deviation_of(const CrossingSegment& segment, const Pieces& 
   return out;
 }
 
+/// A step of about this length, whatever its segment's deviation.
+std::optional<CrossingWalk::Step> CrossingWalk::step_of(const CrossingPoint& from,
+                                                        const Pieces& pieces, double length) const {
+  const auto next = next_point(from, pieces, length);
+  if (!next) return std::nullopt;
+  const CrossingSegment segment = segment_between(from, *next, pieces);
+  return Step{*next, segment, deviation_of(segment, pieces)};
+}
+
 /// A step of at most `length`, shorter until its segment is good enough; `length` becomes what the
 /// next step may be.
 std::optional<CrossingWalk::Step> CrossingWalk::advance(const CrossingPoint& from,
                                                         const Pieces& pieces,
                                                         double& length) const {
   length = std::min(length, longest_step(from, pieces));
-  for (; length >= kLeastStep; length *= 0.5) {
-    const auto next = next_point(from, pieces, length);
-    if (!next) continue;
-    const CrossingSegment segment = segment_between(from, *next, pieces);
-    const double off = deviation_of(segment, pieces);
-    if (!(off <= tolerance_)) continue;
-    // Deviations grow with the fourth power of the length.
-    constexpr double kMostGrowth = 2;
-    constexpr double kCaution = 0.9;
-    const double growth = off > 0 ? kCaution * std::pow(tolerance_ / off, 0.25) : kMostGrowth;
-    length = std::max(0.5 * length, std::min(growth, kMostGrowth) * segment.length());
-    return Step{*next, segment, off};
+  while (length >= kLeastStep) {
+    if (const auto step = step_of(from, pieces, length); step && step->deviation <= tolerance_) {
+      // Deviations grow with the fourth power of the length.
+      constexpr double kMostGrowth = 2;
+      constexpr double kCaution = 0.9;
+      const double off = step->deviation;
+      const double growth = off > 0 ? kCaution * std::pow(tolerance_ / off, 0.25) : kMostGrowth;
+      length = std::max(0.5 * length, std::min(growth, kMostGrowth) * step->segment.length());
+      return step;
+    }
+    length *= 0.5;
   }
   return std::nullopt;
 }
@@ -482,7 +490,7 @@ std::optional<CrossingWalk::Tangency> CrossingWalk::tangency_near(const Crossing
     if (!((x - place).cwiseAbs().cwiseProduct(per_unit).maxCoeff() < reach)) return std::nullopt;
     if (move.cwiseAbs().cwiseProduct(per_unit).maxCoeff() < kGeometric) {
       const CrossingJets pair = jets(x, pieces);
-      if (wall_beyond(x, margins(x, pieces), pieces) || pair.gap().norm() > kNear) break;
+      if (wall_beyond(x, margins(x, pieces), pieces) || pair.gap().norm() > kNearCrossing) break;
       return Tangency{x, solver.rank() == 4};
     }
   }

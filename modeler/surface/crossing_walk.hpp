@@ -99,6 +99,7 @@ class CrossingWalk {
   CrossingSegment segment_between(const CrossingPoint& from, const CrossingPoint& to,
                                   const Pieces& pieces) const;
   double deviation_of(const CrossingSegment& segment, const Pieces& pieces) const;
+  std::optional<Step> step_of(const CrossingPoint& from, const Pieces& pieces, double length) const;
   std::optional<Step> advance(const CrossingPoint& from, const Pieces& pieces,
                               double& length) const;
   std::optional<WalkEnd> pass_walls(CrossingPoint& here, Pieces& pieces) const;

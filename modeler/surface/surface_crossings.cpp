@@ -329,7 +329,7 @@ bool CrossingSearch::is_known(const CrossingPlace& place, const Vector3d& point)
 /// Whether a point is on a curve that is known: there the surfaces may be tangent, or one may have
 /// a pole, and it is no touch.
 bool CrossingSearch::is_on_curve(const Vector3d& point) const {
-  const double room = std::max(2 * tolerance_, kNear);
+  const double room = std::max(2 * tolerance_, kNearCrossing);
   return std::any_of(known_.begin(), known_.end(), [&](const KnownCrossing& known) {
     return known.any_near(point, room, [&](const CrossingSegment& segment, double x) {
       return (segment.at(x).head<3>() - point).norm() <= room;
@@ -358,7 +358,7 @@ bool CrossingSearch::follow(const CrossingPlace& place, double reach) {
   KnownCrossing found(walk_.branch_through(*start));
   segments_ += found.branch().segments.size();
   const bool is_cut_off = found.branch().is_cut_off();
-  if (found.length() > kNear) {
+  if (found.length() > kNearCrossing) {
     known_.push_back(std::move(found));
     if (is_cut_off) cut_off();
     return true;
@@ -554,7 +554,7 @@ SurfaceCrossings cross_surfaces(const SurfaceIndex& first, const SurfaceIndex& s
                                 double tolerance) {
   LIMN_EXPECT(tolerance > 0);
   if (!is_within_numbers(first) || !is_within_numbers(second)) return {{}, {}, false};
-  return CrossingSearch(first, second, std::max(tolerance, kNear)).run();
+  return CrossingSearch(first, second, std::max(tolerance, kNearCrossing)).run();
 }
 
 }  // namespace limn

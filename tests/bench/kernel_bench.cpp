@@ -331,7 +331,7 @@ KnotVector cubic_knots(int count) {
   return *KnotVector::make_clamped(3, 0, 1, interior);
 }
 
-/// Curves and volumes, which no peer here has, or not the same: prepared against the recursion.
+/// Curves and volumes, prepared against the recursion: the peers here are of surfaces.
 void curves_and_volumes(const RowSink& sink) {
   constexpr const char* kRecursion = "limn's own recursion";
   constexpr std::size_t kPlaces = 100'000;

@@ -123,6 +123,16 @@ TEST(Sew, WhatIsFurtherApartStaysApart) {
   EXPECT_NEAR(deviation, 1e-3, 1e-12) << "told at the edge";
 }
 
+TEST(Sew, RefusesPiecesThatAreNotJoined) {
+  const auto lines =
+      *BsplineSurface::make({*KnotVector::make(0, {0, 1, 2}), *KnotVector::make_clamped(1, 0, 1)},
+                            {{0, 0, -1}, {3, 0, -1}, {0, 0, 1}, {3, 0, 1}});
+  const auto body = sew("lines", {*make_plane({}, 1, 1), lines}, kTolerance);
+  ASSERT_FALSE(body.has_value());
+  EXPECT_EQ(body.error().code, ErrorCode::kOutOfRange);
+  EXPECT_EQ(body.error().at, "surface 2");
+}
+
 TEST(Sew, RefusesNothingAndNoTolerance) {
   EXPECT_FALSE(sew("", {}, 1).has_value());
   EXPECT_FALSE(sew("", {*make_plane({}, 1, 1)}, 0).has_value());
